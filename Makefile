@@ -1,0 +1,143 @@
+# pms: build, test, install.  `make help` lists the goals.
+
+# --- what you may want to set ------------------------------------------------
+MODE    ?= release
+PREFIX  ?= /usr/local
+DESTDIR ?=
+MARCH   ?= native
+WERROR  ?=
+CC      ?= cc
+CXX     ?= c++
+# -----------------------------------------------------------------------------
+
+VERSION := 0.1.0
+B       := build/$(MODE)
+Q       := $(if $(V),,@)
+
+PACKAGES := build-essential pkg-config libembree-dev libopenexr-dev libopencolorio-dev \
+            libpng-dev libjpeg-dev libcmocka-dev libnanoflann-dev povray povray-includes \
+            povray-examples mandoc
+FLOORS   := $(shell sed 's/:.*//' src/FLOORS)
+CSRC     := $(foreach f,$(FLOORS),$(wildcard src/$(f)/*.c))
+CXXSRC   := $(wildcard src/image/*.cpp)
+LIBSRC   := $(filter-out src/cli/main.c,$(CSRC))
+LIBOBJ   := $(LIBSRC:%.c=$(B)/%.o) $(CXXSRC:%.cpp=$(B)/%.o)
+UNIT     := $(patsubst %.c,$(B)/%,$(wildcard tests/unit/*_test.c tests/physics/*_test.c \
+            tests/hard/*_test.c tests/fault/*_test.c))
+BENCH    := $(patsubst %.cpp,$(B)/%,$(wildcard tests/bench/*_bench.cpp)) \
+            $(patsubst %.c,$(B)/%,$(wildcard tests/bench/*_bench.c))
+SHTESTS   = $(wildcard tests/house/*.t tests/lang/*.t tests/cli/*.t tests/image/*.t)
+
+PKGS     := OpenEXR OpenColorIO libpng libjpeg
+PKGCF    := $(shell pkg-config --cflags $(PKGS) 2>/dev/null | sed 's/-I/-isystem /g')
+PKGLIB   := $(shell pkg-config --libs $(PKGS) 2>/dev/null) -lembree3
+
+WARN     := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wvla $(if $(WERROR),-Werror)
+CWARN    := -Wstrict-prototypes -Wmissing-prototypes
+OPT_release := -O3 -g -march=$(MARCH)
+OPT_debug   := -O0 -g
+OPT_asan    := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=undefined -DARENA_PARANOID
+OPT_tsan    := -O1 -g -fsanitize=thread
+OPT_cover   := -O0 -g --coverage
+OPT      := $(OPT_$(MODE))
+BASEFLAGS := -Isrc $(PKGCF) -DPMS_VERSION='"$(VERSION)"' -DPMS_DATA_DIR='"$(PREFIX)/share/pms"' \
+            -ffp-contract=off -fno-math-errno -fno-trapping-math -pthread $(OPT)
+ALLCFLAGS := -std=c17 -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 $(BASEFLAGS) $(WARN) $(CWARN) $(CFLAGS)
+ALLCXXFLAGS := -std=c++17 $(BASEFLAGS) $(WARN) $(CXXFLAGS)
+LIBS     := $(PKGLIB) -lm -lstdc++ -lpthread
+
+.PHONY: all help deps demo check check-all parity bench fuzz gallery floors headers install clean
+.DEFAULT_GOAL := all
+.SECONDARY:
+
+all: $(B)/pms ## build the program (build/$(MODE)/pms)
+
+help: ## list the goals
+	@grep -hE '^[a-z-]+:.*##' Makefile | sed -E 's/:.*## /\t/' | expand -t 14
+
+deps: ## install the libraries the build needs (Debian), or name them
+	$(Q)tests/house/deps.sh $(PACKAGES)
+
+# Goals that set up a fresh machine build in a second make, so that pkg-config is
+# asked only after the packages are there.
+demo: deps ## build and render the show scene to out/
+	$(Q)$(MAKE) --no-print-directory $(B)/pms
+	$(Q)mkdir -p out
+	$(Q)$(B)/pms scenes/caustic_glass.pms -o out/caustic_glass.exr -o out/caustic_glass.png
+
+check: deps ## build and run the tests (a few minutes)
+	$(Q)$(MAKE) --no-print-directory check-built
+
+.PHONY: check-built unit
+check-built: $(B)/pms $(UNIT) headers
+	$(Q)CMOCKA_MESSAGE_OUTPUT=TAP PMS=$(B)/pms MODE=$(MODE) prove -j2 --merge $(UNIT) $(SHTESTS)
+
+unit: $(UNIT)
+	$(Q)CMOCKA_MESSAGE_OUTPUT=TAP prove -j2 --merge $(UNIT)
+
+check-all: deps ## the tests under sanitizers, and the long ones
+	$(Q)$(MAKE) --no-print-directory check
+	$(Q)$(MAKE) --no-print-directory check MODE=asan
+
+parity: deps ## compare pictures and times with the installed povray
+	$(Q)$(MAKE) --no-print-directory $(B)/pms
+	$(Q)PMS=$(B)/pms tests/parity/run.sh
+
+bench: deps ## ratios against nanoflann, Embree and povray, measured in one run
+	$(Q)$(MAKE) --no-print-directory bench-built
+.PHONY: bench-built
+bench-built: $(B)/pms $(BENCH)
+	$(Q)PMS=$(B)/pms BUILD=$(B) tests/bench/run.sh
+
+fuzz: deps ## fuzz the scene reader for a minute (needs clang with libFuzzer)
+	$(Q)tests/fuzz/run.sh
+
+gallery: all ## render the pictures of the README
+	$(Q)PMS=$(B)/pms tests/house/gallery.sh
+
+floors: ## check that folders include only what src/FLOORS allows
+	$(Q)tests/house/floors.t
+
+HEADERS := $(wildcard src/*/*.h)
+headers: $(HEADERS:%.h=$(B)/%.h.ok) ## check that every header compiles alone
+$(B)/%.h.ok: %.h
+	$(Q)mkdir -p $(@D)
+	$(Q)$(CC) $(ALLCFLAGS) -Wno-unused-macros -fsyntax-only -x c $< && touch $@
+
+$(B)/pms: $(B)/src/cli/main.o $(B)/libpms.a
+	@echo "  link    $@"
+	$(Q)$(CC) $(OPT) -pthread $(LDFLAGS) -o $@ $^ $(LIBS)
+
+$(B)/libpms.a: $(LIBOBJ)
+	@echo "  archive $@"
+	$(Q)rm -f $@ && $(AR) rcs $@ $^
+
+$(B)/%.o: %.c
+	@echo "  cc      $<"
+	$(Q)mkdir -p $(@D)
+	$(Q)$(CC) $(ALLCFLAGS) -MMD -MP -c -o $@ $<
+
+$(B)/%.o: %.cpp
+	@echo "  c++     $<"
+	$(Q)mkdir -p $(@D)
+	$(Q)$(CXX) $(ALLCXXFLAGS) -MMD -MP -c -o $@ $<
+
+$(B)/tests/bench/%_bench: $(B)/tests/bench/%_bench.o $(B)/libpms.a
+	@echo "  link    $@"
+	$(Q)$(CXX) $(OPT) -pthread $(LDFLAGS) -o $@ $^ $(LIBS)
+
+$(B)/tests/%_test: $(B)/tests/%_test.o $(B)/libpms.a
+	@echo "  link    $@"
+	$(Q)$(CC) $(OPT) -pthread $(LDFLAGS) -o $@ $^ $(LIBS) -lcmocka
+
+install: all ## install program, materials and man pages under $(PREFIX)
+	install -D -m 755 $(B)/pms $(DESTDIR)$(PREFIX)/bin/pms
+	install -d $(DESTDIR)$(PREFIX)/share/pms $(DESTDIR)$(PREFIX)/share/man/man1 $(DESTDIR)$(PREFIX)/share/man/man5
+	install -m 644 $(wildcard stdlib/*) $(DESTDIR)$(PREFIX)/share/pms
+	install -m 644 man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
+	install -m 644 man/*.5 $(DESTDIR)$(PREFIX)/share/man/man5
+
+clean: ## remove what was built
+	rm -rf build out
+
+-include $(shell find build -name '*.d' 2>/dev/null)

@@ -1,0 +1,61 @@
+/* The ray index: which of many things a ray may meet.
+ *
+ * Two kinds, both over Embree, behind this one header.  BoxIndex holds items known only by
+ * their boxes and calls back for the exact test; TriIndex holds triangles.  Embree computes
+ * in float: it only chooses candidates.  Boxes are rounded outward, coordinates re-centred,
+ * and every answer comes from a double computation.  Ties are broken by item order.
+ * SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_ACCEL_ACCEL_H
+#define PMS_ACCEL_ACCEL_H
+
+#include "base/diag.h"
+#include "math/bound.h"
+#include "math/ray.h"
+
+#include <stdint.h>
+
+typedef struct BoxIndex BoxIndex;
+typedef struct TriIndex TriIndex;
+
+/* Test item `item` against the ray's current interval (ray->tmin, ray->tmax).  For a closest
+ * query: on a hit at t, keep what is known of it in `query` and set ray->tmax = t.  For an any
+ * query return true to end it.  Called on the thread that made the query. */
+typedef bool (*AccelTest)(void *query, uint32_t item, Ray *ray);
+
+/* Build an index over `count` finite boxes.  Fails with ERR_MEMORY or ERR_LIBRARY.
+ * Free with box_index_free.  Queries may run on any number of threads. */
+Status box_index_new(Diag *diag, const Bound *boxes, uint32_t count, int threads, BoxIndex **out);
+void box_index_free(BoxIndex *index);
+
+/* Offer the items whose boxes the ray may meet, nearest boxes first, until none is left
+ * before ray->tmax.  `test` may shrink ray->tmax; items may be offered in any order, so a
+ * test that finds an equal t must decide by item number. */
+void box_index_closest(const BoxIndex *index, Ray *ray, AccelTest test, void *query);
+
+/* Like box_index_closest but stops at the first `test` that returns true; returns whether
+ * one did. */
+bool box_index_any(const BoxIndex *index, Ray *ray, AccelTest test, void *query);
+
+/* A triangle met by a ray, in double: p = (1-u-v) a + u b + v c. */
+typedef struct TriHit {
+    double t, u, v;
+    uint32_t triangle;
+} TriHit;
+
+/* Build an index over triangles.
+ *
+ * vertices  vertex_count points, borrowed for the life of the index.
+ * corners   3 indices a triangle, borrowed likewise. */
+Status tri_index_new(Diag *diag, const V3 *vertices, uint32_t vertex_count, const uint32_t *corners,
+                     uint32_t triangle_count, int threads, TriIndex **out);
+void tri_index_free(TriIndex *index);
+
+/* Find the nearest triangle with tmin < t < tmax; equal t: the lowest number wins.  The test
+ * is watertight: a ray through a shared edge meets one of its triangles at least. */
+bool tri_index_closest(const TriIndex *index, const Ray *ray, TriHit *out);
+
+/* Find all triangles along (tmin, tmax), ascending in t, at most `capacity`; returns how many
+ * there are (may exceed capacity). */
+int tri_index_all(const TriIndex *index, const Ray *ray, TriHit *out, int capacity);
+
+#endif

@@ -1,0 +1,128 @@
+/* Files: read whole, written whole or not at all.  SPDX-License-Identifier: Apache-2.0 */
+#include "base/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static Status refuse(Diag *diag, const char *verb, const char *path, int error)
+{
+    return diag_fail(diag, ERR_FILE, "cannot %s '%s': %s", verb, path, strerror(error));
+}
+
+static Status read_all(Diag *diag, int fd, const char *path, char *into, size_t size, size_t *got)
+{
+    *got = 0;
+    while (*got < size) {
+        ssize_t n = read(fd, into + *got, size - *got);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n < 0)
+            return refuse(diag, "read", path, errno);
+        if (n == 0)
+            break;
+        *got += (size_t)n;
+    }
+    return OK;
+}
+
+Status file_read(Diag *diag, const char *path, size_t limit_bytes, Arena *arena,
+                 const char **text, size_t *size)
+{
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (fd < 0)
+        return refuse(diag, "open", path, errno);
+    struct stat info;
+    Status status = OK;
+    char *buffer = NULL;
+    if (fstat(fd, &info) != 0)
+        status = refuse(diag, "open", path, errno);
+    else if (S_ISDIR(info.st_mode))
+        status = diag_fail(diag, ERR_FILE, "'%s' is a directory, not a file", path);
+    else if (!S_ISREG(info.st_mode))
+        status = diag_fail(diag, ERR_FILE, "'%s' is not a regular file", path);
+    else if ((size_t)info.st_size > limit_bytes)
+        status = diag_fail(diag, ERR_FILE, "'%s' has %lld bytes, more than the limit of %zu", path,
+                           (long long)info.st_size, limit_bytes);
+    else if (!(buffer = arena_alloc(arena, (size_t)info.st_size + 1)))
+        status = diag_no_memory(diag, path);
+    else
+        status = read_all(diag, fd, path, buffer, (size_t)info.st_size, size);
+    close(fd);
+    *text = buffer;
+    return status;
+}
+
+bool file_exists(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISREG(info.st_mode) && access(path, R_OK) == 0;
+}
+
+Status out_begin(Diag *diag, const char *path, OutFile *out)
+{
+    int length = snprintf(out->path, sizeof out->path, "%s", path);
+    int temp_length = snprintf(out->temp_path, sizeof out->temp_path, "%s.part%ld", path, (long)getpid());
+    if (length >= (int)sizeof out->path || temp_length >= (int)sizeof out->temp_path)
+        return diag_fail(diag, ERR_FILE, "the path '%.60s...' is too long", path);
+    struct stat info;
+    if (stat(path, &info) == 0 && S_ISDIR(info.st_mode))
+        return diag_fail(diag, ERR_FILE, "cannot write '%s': it is a directory", path);
+    int fd = open(out->temp_path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (fd < 0)
+        return refuse(diag, "write", path, errno);
+    close(fd);
+    return OK;
+}
+
+Status out_commit(Diag *diag, OutFile *out)
+{
+    int fd = open(out->temp_path, O_RDONLY | O_CLOEXEC);
+    bool is_safe = fd >= 0 && fsync(fd) == 0;
+    int error = errno;
+    if (fd >= 0)
+        close(fd);
+    if (is_safe && rename(out->temp_path, out->path) == 0)
+        return OK;
+    error = is_safe ? errno : error;
+    out_discard(out);
+    return refuse(diag, "write", out->path, error);
+}
+
+void out_discard(OutFile *out)
+{
+    unlink(out->temp_path);
+}
+
+Status file_write(Diag *diag, const char *path, const void *bytes, size_t size)
+{
+    OutFile out;
+    TRY(out_begin(diag, path, &out));
+    FILE *file = fopen(out.temp_path, "wb");
+    bool is_written = file && fwrite(bytes, 1, size, file) == size;
+    int error = errno;
+    if (file && fclose(file) != 0 && is_written) {
+        is_written = false;
+        error = errno;
+    }
+    if (is_written)
+        return out_commit(diag, &out);
+    out_discard(&out);
+    return refuse(diag, "write", path, error);
+}
+
+const char *path_base(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+const char *path_extension(const char *path)
+{
+    const char *base = path_base(path);
+    const char *dot = strrchr(base, '.');
+    return dot && dot != base ? dot + 1 : "";
+}

@@ -1,0 +1,53 @@
+/* The photon pass: budgets, emission, walks, maps, and the books.
+ * SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_PHOTON_PHOTON_PASS_H
+#define PMS_PHOTON_PHOTON_PASS_H
+
+#include "photon/photon_map.h"
+#include "trace/trace.h"
+
+/* Per light: what it was given and what became of it.  emitted = stored_paths + absorbed +
+ * escaped + cut, exactly. */
+typedef struct LightBooks {
+    double power;     /* flux onto the targets (caustic) or into the scene (global), summed RGB */
+    double share;     /* of the budget, 0 to 1 */
+    uint64_t budget, emitted, stored_paths, absorbed, escaped, cut;
+    uint64_t stored;  /* photons */
+    Rgb flux_emitted, flux_stored, flux_absorbed, flux_escaped, flux_cut;
+} LightBooks;
+
+typedef struct PhotonBooks {
+    int light_count;
+    LightBooks *caustic, *global; /* light_count each, or NULL when that map is not made */
+} PhotonBooks;
+
+typedef struct PhotonMaps {
+    PhotonMap *caustic, *global; /* NULL: the plan does not call for it */
+    double caustic_radius, global_radius; /* gather radii, scene units */
+    PhotonBooks books;
+} PhotonMaps;
+
+typedef struct PhotonOptions {
+    uint64_t seed;
+    int threads;
+    void (*progress)(void *ctx, double fraction);
+    void *progress_ctx;
+} PhotonOptions;
+
+/* Share `total` items by weight with largest-remainder rounding: the shares add up exactly;
+ * weight 0 gets none.  All weights 0: all shares 0. */
+void photon_budget(const double *weights, int count, uint64_t total, uint64_t *shares);
+
+/* Fill the power, share and budget of every light (a small pilot emission), without tracing
+ * the rest: what `explain` prints.  Free with photon_books_done. */
+Status photon_plan_budgets(const Tracer *tracer, const PhotonOptions *options, Diag *diag,
+                           PhotonBooks *out);
+void photon_books_done(PhotonBooks *books);
+
+/* Run the pass the plan calls for.  Warns and goes on without a map when nothing could be
+ * stored.  Counters are added to *stats.  Free with photon_maps_done. */
+Status photon_pass(const Tracer *tracer, const PhotonOptions *options, Diag *diag, Stats *stats,
+                   PhotonMaps *out);
+void photon_maps_done(PhotonMaps *maps);
+
+#endif

@@ -1,0 +1,51 @@
+/* The plan: which effects a scene calls for, and who asked.
+ *
+ * A pure function of the scene and the render options.  Every later pass asks the plan and
+ * does nothing that is off.  SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_PLAN_PLAN_H
+#define PMS_PLAN_PLAN_H
+
+#include "scene/scene.h"
+
+typedef enum FeatureId {
+#define X(id, name, text) id,
+#include "plan/feature.def"
+#undef X
+    FEATURE_COUNT
+} FeatureId;
+
+typedef struct PlanRow {
+    bool is_on;
+    Span why;           /* what asked for it, or what rules it out; may be SPAN_NONE */
+    char reason[160];   /* in words: "object with refraction, photons { target }" */
+} PlanRow;
+
+/* Options that change what is simulated, whatever the scene says. */
+typedef struct PlanOptions {
+    bool has_indirect;      /* --gi */
+    bool has_no_photons;    /* --no-photons */
+    int quality;            /* POV's +Q, 0 to 9 */
+} PlanOptions;
+
+#define PLAN_OPTIONS_DEFAULT ((PlanOptions){.quality = 9})
+
+typedef struct Plan {
+    PlanRow rows[FEATURE_COUNT];
+    bool *light_makes_caustics; /* per light: takes part in the caustic map */
+    long caustic_photons;       /* to emit towards targets, all lights; 0: from spacing */
+    long global_photons;        /* to emit into the scene, all lights */
+} Plan;
+
+/* Make the plan.  Memory comes from `arena`.  ERR_MEMORY or OK. */
+Status plan_make(const Scene *scene, const PlanOptions *options, Arena *arena, Plan *out);
+
+static inline bool plan_has(const Plan *plan, FeatureId feature)
+{
+    return plan->rows[feature].is_on;
+}
+
+/* Return the name of a feature as explain and --stats show it. */
+const char *feature_name(FeatureId feature);
+const char *feature_text(FeatureId feature);
+
+#endif

@@ -1,0 +1,71 @@
+/* Objects while a scene is being read: a tree of shapes with looks, and its way into a Scene.
+ *
+ * Nodes mirror what was written.  scene_build_finish hands textures and flags down from parents
+ * to children, dissolves top-level unions, gives every leaf its Surface and fills the Scene.
+ * SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_SCENE_NODE_H
+#define PMS_SCENE_NODE_H
+
+#include "scene/scene.h"
+
+typedef struct ColorMap {
+    const MapEntry *entries;
+    int count;
+} ColorMap;
+
+typedef struct Material {
+    const Texture *texture, *inner_texture;
+    const Interior *interior;
+} Material;
+
+typedef enum NodeKind { NODE_LEAF, NODE_CSG, NODE_LIGHT } NodeKind;
+
+typedef struct Node Node;
+struct Node {
+    NodeKind kind;
+    Span span;
+    const char *name;           /* identifier or keyword, for messages and explain */
+    Shape *shape;               /* of a leaf */
+    ShapeKind csg;              /* of a CSG node: union, merge or intersection */
+    bool is_difference;         /* an intersection whose later children were inverted */
+    bool is_inverted;           /* of a CSG node */
+    Node **children;
+    int child_count;
+    Node **clips, **bounds;
+    int clip_count, bound_count;
+    Light *light;               /* of a NODE_LIGHT */
+    const Texture *texture, *inner_texture;
+    const Texture *const *mesh_textures;
+    int mesh_texture_count;
+    const Interior *interior;
+    PhotonFlags photons;
+    bool has_photons;           /* photons{} was written here */
+    Tri hollow, double_illuminate;
+    bool no_shadow, no_image, no_reflection, no_radiosity;
+};
+
+typedef struct SceneBuild {
+    Arena *arena;               /* the scene's */
+    Node **nodes;               /* top-level objects in written order, lights too */
+    size_t node_count, node_capacity;
+    const Texture *default_texture; /* #default; applied when a top-level object is added */
+} SceneBuild;
+
+/* Make an empty scene and its arenas, or NULL. */
+Scene *scene_new(void);
+
+/* Deep copy of a node tree in `arena`, or NULL. */
+Node *node_copy(Arena *arena, const Node *node);
+
+/* Apply a transform to a node: geometry, clips, bounds, lights and the looks attached so far.
+ * Returns false when memory is out. */
+bool node_transform(Arena *arena, Node *node, const Xform *xform);
+
+/* Add a top-level node (textures missing so far get the current default texture).  Returns
+ * false when memory is out. */
+bool scene_build_add(SceneBuild *build, Node *node);
+
+/* Turn the nodes into the objects, surfaces and lights of `scene`.  ERR_MEMORY or OK. */
+Status scene_build_finish(SceneBuild *build, Scene *scene, Diag *diag);
+
+#endif

@@ -1,0 +1,36 @@
+/* Reading scenes.  SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_SDL_SDL_H
+#define PMS_SDL_SDL_H
+
+#include "scene/scene.h"
+
+typedef struct SdlDeclare {
+    const char *name;
+    const char *value; /* a number, or a string in double quotes */
+} SdlDeclare;
+
+typedef struct SdlOptions {
+    const char *const *library_paths; /* searched in order for includes, after the current folder
+                                         and the folder of the including file */
+    int library_path_count;
+    const SdlDeclare *declares;
+    int declare_count;
+    int width, height;      /* for image_width and image_height */
+    double clock;
+    long max_tokens;        /* tokens evaluated; 0: SDL_MAX_TOKENS */
+    int threads;            /* for building mesh indices */
+} SdlOptions;
+
+#define SDL_MAX_TOKENS 200000000L
+
+/* Read the scene file at `path` and everything it includes.
+ *
+ * Fails with ERR_SYNTAX, ERR_SCENE, ERR_FILE or ERR_MEMORY after giving the messages; *out is
+ * then NULL.  Free the scene with scene_free. */
+Status sdl_load(Diag *diag, const char *path, const SdlOptions *options, Scene **out);
+
+/* The same for a text in memory; `path` is what messages call it. */
+Status sdl_load_text(Diag *diag, const char *path, const char *text, size_t size,
+                     const SdlOptions *options, Scene **out);
+
+#endif

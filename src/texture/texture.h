@@ -1,0 +1,131 @@
+/* Looks: pigments, normals, finishes, and the textures made of them; interiors.
+ *
+ * All nodes live in the scene arena and are immutable once read: applying a transform makes a
+ * new node that wraps or copies the old one.  SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_TEXTURE_TEXTURE_H
+#define PMS_TEXTURE_TEXTURE_H
+
+#include "base/arena.h"
+#include "base/span.h"
+#include "math/rgb.h"
+#include "math/xform.h"
+
+/* The language's five-part colour. */
+typedef struct Color5 {
+    float r, g, b, filter, transmit;
+} Color5;
+
+static inline Rgb color5_rgb(Color5 c) { return rgb(c.r, c.g, c.b); }
+
+/* Return what passes through a surface of this colour: filter*rgb + transmit. */
+static inline Rgb color5_through(Color5 c)
+{
+    return rgb(c.filter * c.r + c.transmit, c.filter * c.g + c.transmit,
+               c.filter * c.b + c.transmit);
+}
+
+typedef enum PatternKind { PATTERN_CHECKER, PATTERN_GRADIENT, PATTERN_COUNT } PatternKind;
+
+typedef enum WaveKind {
+    WAVE_RAMP,
+    WAVE_TRIANGLE,
+    WAVE_SINE,
+    WAVE_SCALLOP,
+    WAVE_CUBIC,
+    WAVE_POLY
+} WaveKind;
+
+/* A scalar field over space. */
+typedef struct Pattern {
+    PatternKind kind;
+    V3 direction;             /* gradient: unit */
+    float frequency, phase;   /* frequency 0: no wrap */
+    WaveKind wave;
+    float exponent;           /* WAVE_POLY */
+    bool is_transformed;
+    Xform xform;              /* pattern space to world space */
+} Pattern;
+
+typedef struct MapEntry {
+    float key;
+    Color5 color;
+} MapEntry;
+
+typedef struct Pigment Pigment;
+struct Pigment {
+    Span span;
+    bool is_solid;                /* color alone */
+    Color5 color;
+    Pattern pattern;
+    const MapEntry *map;          /* color_map, in written order; NULL for a list */
+    int map_count;
+    const Pigment *const *list;   /* checker's pigments; NULL for a map */
+    int list_count;
+};
+
+/* Everything of finish{}, in the language's terms (defaults: FINISH_DEFAULT). */
+typedef struct Finish {
+    Rgb ambient, emission;
+    float diffuse, diffuse_back, brilliance; /* diffuse: albedo factor already applied */
+    float phong, phong_size;
+    float specular, roughness;
+    float metallic;
+    Rgb reflection_min, reflection_max;
+    float reflection_falloff, reflection_exponent, reflection_metallic;
+    bool is_fresnel, conserves_energy;
+    float irid, irid_thickness, irid_turbulence;
+    float crand;
+} Finish;
+
+#define FINISH_DEFAULT                                                                             \
+    ((Finish){.ambient = {0.1f, 0.1f, 0.1f},                                                       \
+              .diffuse = 0.6f,                                                                     \
+              .brilliance = 1,                                                                     \
+              .phong_size = 40,                                                                    \
+              .roughness = 0.05f,                                                                  \
+              .reflection_falloff = 1,                                                             \
+              .reflection_exponent = 1})
+
+typedef struct Layer {
+    const Pigment *pigment; /* never NULL after scene_check */
+    const Finish *finish;   /* never NULL after scene_check */
+} Layer;
+
+/* Layers from the bottom (first written) to the top. */
+typedef struct Texture {
+    Span span;
+    const Layer *layers;
+    int layer_count; /* at least 1 */
+} Texture;
+
+typedef struct Interior {
+    Span span;
+    double ior;             /* 1: as outside */
+    double fade_distance, fade_power; /* scene units; distance 0: no absorption */
+    Rgb fade_color;
+    float caustics;
+} Interior;
+
+#define INTERIOR_DEFAULT ((Interior){.ior = 1})
+
+/* Return the pigment's colour at a world point.  `direction` is for patterns that look at the
+ * ray (unused by the current ones).  Never fails.  Any thread. */
+Color5 pigment_at(const Pigment *pigment, V3 p);
+
+/* Return a pigment or texture seen through `xform` (a new node, or the old one when nothing
+ * depends on place); NULL when memory is out. */
+const Pigment *pigment_transform(Arena *arena, const Pigment *pigment, const Xform *xform);
+const Texture *texture_transform(Arena *arena, const Texture *texture, const Xform *xform);
+
+/* Return true if some part of the texture may let light through (any filter or transmit in
+ * any colour it can take). */
+bool pigment_may_transmit(const Pigment *pigment);
+bool texture_may_transmit(const Texture *texture);
+/* Return true if any finish of the texture reflects. */
+bool texture_may_reflect(const Texture *texture);
+
+/* Return the transmittance of `distance` scene units inside an interior.
+ * is_shadow: shadow rays ignore fade_power 0, view rays do not. */
+Rgb interior_fade(const Interior *interior, double distance, bool is_shadow);
+
+#endif
