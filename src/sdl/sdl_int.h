@@ -87,11 +87,15 @@ Rgb parse_rgb(Parser *p);             /* colour without filter and transmit; a f
 bool parse_is_color(Parser *p);
 /* Return a terminated string in the scene arena. */
 const char *parse_string(Parser *p);
+/* The same for the name of a file: a literal keeps its backslashes. */
+const char *parse_path(Parser *p);
+/* Say how the bytes of string literals from here on are read (charset; ASCII at first). */
+void parse_set_utf8(Parser *p, bool is_utf8);
 /* Return true if the next token can begin a float or vector expression. */
 bool parse_is_expression(Parser *p);
 
 /* Take the next token if it is an identifier (or array element) whose value has this kind;
- * return the value (borrowed) or NULL. */
+ * return the value (valid until a few more were taken) or NULL. */
 const Value *parse_accept_value(Parser *p, ValueKind kind);
 
 /* Transforms: parse_is_xform tells whether the next token begins one (translate, rotate,
