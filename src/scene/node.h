@@ -18,6 +18,8 @@ typedef struct Material {
     const Interior *interior;
 } Material;
 
+enum { NODE_DEPTH_MAX = 200 }; /* what nests deeper is refused: every walk is recursive */
+
 typedef enum NodeKind { NODE_LEAF, NODE_CSG, NODE_LIGHT } NodeKind;
 
 typedef struct Node Node;
@@ -25,6 +27,8 @@ struct Node {
     NodeKind kind;
     Span span;
     const char *name;           /* identifier or keyword, for messages and explain */
+    bool is_named;              /* name is an identifier */
+    int depth;                  /* of a CSG node: 1 + that of its deepest child; a leaf has 0 */
     Shape *shape;               /* of a leaf */
     ShapeKind csg;              /* of a CSG node: union, merge or intersection */
     bool is_difference;         /* an intersection whose later children were inverted */
@@ -54,12 +58,25 @@ typedef struct SceneBuild {
 /* Make an empty scene and its arenas, or NULL. */
 Scene *scene_new(void);
 
+/* Remember a mesh, so that scene_free frees its index.  Returns false when memory is out. */
+bool scene_add_mesh(Scene *scene, MeshData *mesh);
+
 /* Deep copy of a node tree in `arena`, or NULL. */
 Node *node_copy(Arena *arena, const Node *node);
 
 /* Apply a transform to a node: geometry, clips, bounds, lights and the looks attached so far.
  * Returns false when memory is out. */
 bool node_transform(Arena *arena, Node *node, const Xform *xform);
+
+/* Swap inside and outside of a node, in place. */
+void node_invert(Node *node);
+
+/* Return true if every shape of the node has an inside; lights do not count. */
+bool node_is_solid(const Node *node);
+
+/* Return the texture of objects that have none: #default's, or black with the default finish.
+ * NULL when memory is out. */
+const Texture *scene_build_default(SceneBuild *build);
 
 /* Add a top-level node (textures missing so far get the current default texture).  Returns
  * false when memory is out. */

@@ -32,6 +32,7 @@ typedef enum ValueKind {
     VALUE_TRANSFORM, /* node: const Xform */
     VALUE_CAMERA,    /* node: const Camera */
     VALUE_COLOR_MAP, /* node: const ColorMap (scene/node.h) */
+    VALUE_SKY,       /* node: const Sky */
     VALUE_KIND_COUNT
 } ValueKind;
 
@@ -49,6 +50,9 @@ typedef struct Value {
 
 /* Return the next token without taking it.  Valid until the next parse_ call. */
 const Token *parse_peek(Parser *p);
+/* Return true if the very next token is of this kind, without carrying out a directive that
+ * stands before it: for what may or may not follow a finished value (texture{} texture{}). */
+bool parse_is_next(Parser *p, TokenKind kind);
 /* Take the next token. */
 Token parse_next(Parser *p);
 /* Take the next token if it is of this kind (punctuation or keyword); return whether it was. */
@@ -122,7 +126,8 @@ void *parse_no_null(Parser *p, const void *node);
  * background, global_settings ...); fails on anything else. */
 void read_statement(Parser *p);
 /* If the next token begins a block that can be a value (an object, texture, pigment, finish,
- * interior, material, transform, camera, color_map), read it into *out and return true. */
+ * interior, material, transform, camera, color_map, sky_sphere), read it into *out and return
+ * true. */
 bool read_value(Parser *p, Value *out);
 /* #default { ... }, after its opening brace and up to and including the closing one. */
 void read_default(Parser *p);

@@ -71,10 +71,15 @@ typedef struct Finish {
     float specular, roughness;
     float metallic;
     Rgb reflection_min, reflection_max;
-    float reflection_falloff, reflection_exponent, reflection_metallic;
+    float reflection_falloff;
+    float reflection_exponent; /* as written: the reflected colour is raised to 1/exponent */
+    float reflection_metallic;
     bool is_fresnel, conserves_energy;
     float irid, irid_thickness, irid_turbulence;
     float crand;
+    float ior, caustics; /* old place of an interior's; 0: not given */
+    /* The amounts were written as albedo: the readers need it when more items follow. */
+    bool is_diffuse_albedo, is_phong_albedo, is_specular_albedo;
 } Finish;
 
 #define FINISH_DEFAULT                                                                             \
