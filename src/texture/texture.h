@@ -46,6 +46,13 @@ typedef struct Pattern {
     Xform xform;              /* pattern space to world space */
 } Pattern;
 
+/* Return the pattern's value at a world point: wrapped by frequency and phase, shaped by the
+ * wave; block patterns give the number of the entry.  Never fails.  Any thread. */
+double pattern_value(const Pattern *pattern, V3 p);
+
+/* Return the world point p where the pattern's own space has it. */
+V3 pattern_point(const Pattern *pattern, V3 p);
+
 typedef struct MapEntry {
     float key;
     Color5 color;
@@ -113,8 +120,8 @@ typedef struct Interior {
 
 #define INTERIOR_DEFAULT ((Interior){.ior = 1})
 
-/* Return the pigment's colour at a world point.  `direction` is for patterns that look at the
- * ray (unused by the current ones).  Never fails.  Any thread. */
+/* Return the pigment's colour at a world point.  Pigments in a list are evaluated at the point
+ * the outer pattern sees.  Never fails.  Any thread. */
 Color5 pigment_at(const Pigment *pigment, V3 p);
 
 /* Return a pigment or texture seen through `xform` (a new node, or the old one when nothing
@@ -122,15 +129,17 @@ Color5 pigment_at(const Pigment *pigment, V3 p);
 const Pigment *pigment_transform(Arena *arena, const Pigment *pigment, const Xform *xform);
 const Texture *texture_transform(Arena *arena, const Texture *texture, const Xform *xform);
 
-/* Return true if some part of the texture may let light through (any filter or transmit in
- * any colour it can take). */
+/* Return true if some part of the pigment may let light through (any filter or transmit in any
+ * colour it can take); of the texture: if every one of its layers may. */
 bool pigment_may_transmit(const Pigment *pigment);
 bool texture_may_transmit(const Texture *texture);
+
 /* Return true if any finish of the texture reflects. */
 bool texture_may_reflect(const Texture *texture);
 
 /* Return the transmittance of `distance` scene units inside an interior.
- * is_shadow: shadow rays ignore fade_power 0, view rays do not. */
+ *
+ * is_shadow  shadow rays ignore fade_power 0, view rays do not. */
 Rgb interior_fade(const Interior *interior, double distance, bool is_shadow);
 
 #endif
