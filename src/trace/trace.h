@@ -26,11 +26,14 @@ typedef struct TraceThread {
     const Tracer *tracer;
     ShapeScratch *shapes;
     Arena *scratch; /* reset by the pass after each sample or photon */
+    uint32_t *blockers; /* per light: the object that blocked its last shadow ray, or none */
     Stats stats;
 } TraceThread;
 Status trace_thread_init(TraceThread *thread, const Tracer *tracer, Diag *diag);
 void trace_thread_done(TraceThread *thread);
 
+/* Camera, refracted and photon rays do not see no_image objects, reflected ones do not see
+ * no_reflection objects.  What follows a reflected ray through glass is a reflected ray. */
 typedef enum RayKind { RAY_CAMERA, RAY_REFLECTED, RAY_REFRACTED, RAY_PHOTON, RAY_KIND_COUNT } RayKind;
 
 typedef struct Hit {
@@ -45,11 +48,12 @@ typedef struct Hit {
 } Hit;
 
 /* Find the nearest surface with ray->tmin < t < ray->tmax that rays of this kind see.
- * Equal t: the object written first. */
+ * Surfaces of several objects closer together than the error of their t: the object written
+ * first.  Counts the ray in the thread's statistics under its kind. */
 bool trace_closest(TraceThread *thread, const Ray *ray, RayKind kind, Hit *out);
 
-/* Return the ray that leaves a surface point in unit direction d: origin pushed to the side d
- * points to by the point's error bound; (0, infinity). */
+/* Return the ray that leaves a surface point in unit direction d: origin pushed off the surface,
+ * to the side d points to, by more than the point's error bound; (0, infinity). */
 Ray trace_ray_from(const ShapePoint *point, V3 d);
 
 /* The interiors a ray is inside of, innermost last. */
@@ -71,9 +75,10 @@ typedef struct SurfaceLayer {
     Rgb above;        /* what reaches this layer through the ones above */
     const Finish *finish;
     V3 n;             /* unit, faces the viewer */
-    Rgb reflect;      /* reflectivity at this angle, metallic and fresnel applied; not filtered
-                         by the layers above */
-    V3 reflect_dir;   /* unit; above the geometric surface */
+    Rgb reflect;      /* reflectivity at this angle, metallic, fresnel and irid applied; not
+                         filtered by the layers above; the reflected colour is to be raised to
+                         1/finish->reflection_exponent first */
+    V3 reflect_dir;   /* unit; above the geometric surface; set if reflect is not black */
 } SurfaceLayer;
 
 enum { SURFACE_LAYERS_MAX = 16 };
@@ -83,15 +88,21 @@ typedef struct SurfaceSample {
     V3 ng;            /* geometric normal turned to wo */
     const Surface *surface;
     bool is_entering;
-    int layer_count;
+    int layer_count;  /* those that light reaches: below an opaque layer there are no more */
     SurfaceLayer layers[SURFACE_LAYERS_MAX]; /* top first */
-    Rgb through;      /* what passes all layers: throughput of the transmitted ray */
-    bool has_transmission; /* through is above nothing and a ray should follow */
-    bool is_total_reflection; /* then transmit_dir is the mirror direction, throughput 1 */
-    bool is_straight; /* the ior does not change: the trace level does not count this */
+    Rgb filter;       /* what passes all layers: decides on bailing out */
+    bool has_transmission; /* filter is above adc_bailout and a ray should follow; what is
+                              below is set only then */
+    bool is_total_reflection; /* then transmit_dir is the mirror direction */
+    bool is_straight; /* the ior does not change: the trace level does not count this (but
+                         level + 1 < max_trace_level must hold all the same) */
+    Rgb through;      /* throughput of the transmitted ray: filter (1 if total reflection) and
+                         absorption by the interior it leaves.  The language absorbs here and
+                         nowhere else: light that a surface inside an interior gives off or
+                         reflects is not absorbed on the way that led to that surface */
     V3 transmit_dir;  /* unit */
     Interiors inside_after; /* of the transmitted ray */
-    Rgb segment;      /* absorption along the ray that led here */
+    const SceneSettings *settings;
 } SurfaceSample;
 
 /* Evaluate the surface at a hit for a ray inside `interiors`. */
@@ -101,15 +112,17 @@ void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit,
 /* Return the fraction of the light that goes from p (pushed off its surface) towards `to` for
  * `distance` scene units and arrives: black when blocked, filtered by what is transparent.
  *
+ * distance        what light_at gave; behind a parallel light it is negative: no shadow.
+ * light           index of the light, for the thread's memory of the last blocker; -1: none.
  * blocks_targets  objects that are photon targets with refraction cast full shadows (their
  *                 light comes with the caustic map). */
-Rgb trace_shadow(TraceThread *thread, const ShapePoint *from, V3 to, double distance,
+Rgb trace_shadow(TraceThread *thread, const ShapePoint *from, V3 to, double distance, int light,
                  bool blocks_targets);
 
 /* Light arriving at a point from one light source, before any shadow. */
 typedef struct LightSample {
     V3 to_light;     /* unit */
-    double distance; /* scene units */
+    double distance; /* scene units; of parallel lights: to their plane, may be negative */
     Rgb color;       /* colour times spot, cylinder and distance attenuation; black: none */
 } LightSample;
 
@@ -117,7 +130,7 @@ typedef struct LightSample {
  * point of its area). */
 LightSample light_at(const Light *light, V3 location, V3 p);
 
-/* Return the attenuation by the light's cone or beam towards a point (no distance fading). */
+/* Return the attenuation by the light's cone or beam at p (no distance fading). */
 double light_shape_factor(const Light *light, V3 location, V3 p);
 
 /* Return 2/(1+(d/fade_distance)^fade_power), or 1 for a light without fading. */
