@@ -23,7 +23,8 @@ V3 pattern_point(const Pattern *pattern, V3 p)
 /* 0 or 1 by the parity of the unit cube. */
 static double checker(V3 p)
 {
-    double cubes = floor(p.x + EPS_LANGUAGE) + floor(p.y + EPS_LANGUAGE) + floor(p.z + EPS_LANGUAGE);
+    double cubes =
+        floor(p.x + EPS_LANGUAGE) + floor(p.y + EPS_LANGUAGE) + floor(p.z + EPS_LANGUAGE);
     return cubes - 2 * floor(cubes * 0.5);
 }
 

@@ -3,8 +3,8 @@
 
 const Texture *texture_transform(Arena *arena, const Texture *texture, const Xform *xform)
 {
-    Layer *layers = arena_copy(arena, texture->layers,
-                               (size_t)texture->layer_count * sizeof *texture->layers);
+    Layer *layers =
+        arena_copy(arena, texture->layers, (size_t)texture->layer_count * sizeof *texture->layers);
     if (!layers)
         return NULL;
     bool is_changed = false;

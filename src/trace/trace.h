@@ -25,7 +25,7 @@ Bound tracer_bound(const Tracer *tracer);
 typedef struct TraceThread {
     const Tracer *tracer;
     ShapeScratch *shapes;
-    Arena *scratch; /* reset by the pass after each sample or photon */
+    Arena *scratch;     /* reset by the pass after each sample or photon */
     uint32_t *blockers; /* per light: the object that blocked its last shadow ray, or none */
     Stats stats;
 } TraceThread;
@@ -34,17 +34,23 @@ void trace_thread_done(TraceThread *thread);
 
 /* Camera, refracted and photon rays do not see no_image objects, reflected ones do not see
  * no_reflection objects.  What follows a reflected ray through glass is a reflected ray. */
-typedef enum RayKind { RAY_CAMERA, RAY_REFLECTED, RAY_REFRACTED, RAY_PHOTON, RAY_KIND_COUNT } RayKind;
+typedef enum RayKind {
+    RAY_CAMERA,
+    RAY_REFLECTED,
+    RAY_REFRACTED,
+    RAY_PHOTON,
+    RAY_KIND_COUNT
+} RayKind;
 
 typedef struct Hit {
     double t;
-    ShapePoint point;        /* p, ng, ns, uv; ng outward of the solid */
+    ShapePoint point; /* p, ng, ns, uv; ng outward of the solid */
     const Surface *surface;
     const Object *object;
     const Shape *leaf;
-    uint32_t part;           /* of the leaf */
-    double u, v;             /* barycentrics of a triangle */
-    bool is_entering;        /* the ray goes into the leaf here (against ng) */
+    uint32_t part;    /* of the leaf */
+    double u, v;      /* barycentrics of a triangle */
+    bool is_entering; /* the ray goes into the leaf here (against ng) */
 } Hit;
 
 /* Find the nearest surface with ray->tmin < t < ray->tmax that rays of this kind see.
@@ -61,7 +67,8 @@ enum { INTERIORS_MAX = 12 };
 typedef struct Interiors {
     int count;
     const Interior *in[INTERIORS_MAX];
-    uint32_t object[INTERIORS_MAX]; /* the surface's object: entering and leaving are paired by it */
+    uint32_t
+        object[INTERIORS_MAX]; /* the surface's object: entering and leaving are paired by it */
 } Interiors;
 
 /* Fill `out` with the interiors that contain p (for a camera or light inside glass). */
@@ -70,44 +77,44 @@ void interiors_at(const Tracer *tracer, V3 p, Interiors *out);
 /* One layer of a surface, evaluated.  Colours are pov-facts' symbols: see finish arithmetic in
  * man/pms.5. */
 typedef struct SurfaceLayer {
-    Rgb color;        /* pigment */
-    float opacity;    /* 1 - filter - transmit, may be negative */
-    Rgb above;        /* what reaches this layer through the ones above */
+    Rgb color;     /* pigment */
+    float opacity; /* 1 - filter - transmit, may be negative */
+    Rgb above;     /* what reaches this layer through the ones above */
     const Finish *finish;
-    V3 n;             /* unit, faces the viewer */
-    Rgb reflect;      /* reflectivity at this angle, metallic, fresnel and irid applied; not
-                         filtered by the layers above; the reflected colour is to be raised to
-                         1/finish->reflection_exponent first */
-    V3 reflect_dir;   /* unit; above the geometric surface; set if reflect is not black */
+    V3 n;           /* unit, faces the viewer */
+    Rgb reflect;    /* reflectivity at this angle, metallic, fresnel and irid applied; not
+                       filtered by the layers above; the reflected colour is to be raised to
+                       1/finish->reflection_exponent first */
+    V3 reflect_dir; /* unit; above the geometric surface; set if reflect is not black */
 } SurfaceLayer;
 
 enum { SURFACE_LAYERS_MAX = 16 };
 typedef struct SurfaceSample {
     ShapePoint at;
-    V3 wo;            /* unit, to where the ray came from */
-    V3 ng;            /* geometric normal turned to wo */
+    V3 wo; /* unit, to where the ray came from */
+    V3 ng; /* geometric normal turned to wo */
     const Surface *surface;
     bool is_entering;
-    int layer_count;  /* those that light reaches: below an opaque layer there are no more */
+    int layer_count; /* those that light reaches: below an opaque layer there are no more */
     SurfaceLayer layers[SURFACE_LAYERS_MAX]; /* top first */
-    Rgb filter;       /* what passes all layers: decides on bailing out */
-    bool has_transmission; /* filter is above adc_bailout and a ray should follow; what is
-                              below is set only then */
+    Rgb filter;                              /* what passes all layers: decides on bailing out */
+    bool has_transmission;    /* filter is above adc_bailout and a ray should follow; what is
+                                 below is set only then */
     bool is_total_reflection; /* then transmit_dir is the mirror direction */
-    bool is_straight; /* the ior does not change: the trace level does not count this (but
-                         level + 1 < max_trace_level must hold all the same) */
-    Rgb through;      /* throughput of the transmitted ray: filter (1 if total reflection) and
-                         absorption by the interior it leaves.  The language absorbs here and
-                         nowhere else: light that a surface inside an interior gives off or
-                         reflects is not absorbed on the way that led to that surface */
-    V3 transmit_dir;  /* unit */
+    bool is_straight;         /* the ior does not change: the trace level does not count this (but
+                                 level + 1 < max_trace_level must hold all the same) */
+    Rgb through;            /* throughput of the transmitted ray: filter (1 if total reflection) and
+                               absorption by the interior it leaves.  The language absorbs here and
+                               nowhere else: light that a surface inside an interior gives off or
+                               reflects is not absorbed on the way that led to that surface */
+    V3 transmit_dir;        /* unit */
     Interiors inside_after; /* of the transmitted ray */
     const SceneSettings *settings;
 } SurfaceSample;
 
 /* Evaluate the surface at a hit for a ray inside `interiors`. */
-void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit,
-                    const Interiors *interiors, SurfaceSample *out);
+void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit, const Interiors *interiors,
+                    SurfaceSample *out);
 
 /* Return the fraction of the light that goes from p (pushed off its surface) towards `to` for
  * `distance` scene units and arrives: black when blocked, filtered by what is transparent.

@@ -13,15 +13,31 @@ typedef struct Row {
     double value; /* as povray prints it: 8 digits */
 } Row;
 
-#define CHECKER {.kind = PATTERN_CHECKER}
+#define CHECKER                                                                                    \
+    {                                                                                              \
+        .kind = PATTERN_CHECKER                                                                    \
+    }
 #define GRADIENT_X .kind = PATTERN_GRADIENT, .direction = {1, 0, 0}, .frequency = 1
-#define WAVE(w) {GRADIENT_X, .wave = w}
+#define WAVE(w)                                                                                    \
+    {                                                                                              \
+        GRADIENT_X, .wave = w                                                                      \
+    }
 #define GRADIENT_121                                                                               \
-    {.kind = PATTERN_GRADIENT,                                                                     \
-     .frequency = 1,                                                                               \
-     .direction = {0.40824829046386302, 0.81649658092772603, -0.40824829046386302}}
-#define POLY {GRADIENT_X, .wave = WAVE_POLY, .exponent = 2.5f}
-#define FREQUENT {.kind = PATTERN_GRADIENT, .direction = {1, 0, 0}, .frequency = 3, .phase = 0.25f}
+    {                                                                                              \
+        .kind = PATTERN_GRADIENT, .frequency = 1, .direction = {                                   \
+            0.40824829046386302,                                                                   \
+            0.81649658092772603,                                                                   \
+            -0.40824829046386302                                                                   \
+        }                                                                                          \
+    }
+#define POLY                                                                                       \
+    {                                                                                              \
+        GRADIENT_X, .wave = WAVE_POLY, .exponent = 2.5f                                            \
+    }
+#define FREQUENT                                                                                   \
+    {                                                                                              \
+        .kind = PATTERN_GRADIENT, .direction = {1, 0, 0}, .frequency = 3, .phase = 0.25f           \
+    }
 
 static void test_measured_values(void **state)
 {

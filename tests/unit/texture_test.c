@@ -9,7 +9,10 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#define RAMP {.kind = PATTERN_GRADIENT, .direction = {1, 0, 0}, .frequency = 1}
+#define RAMP                                                                                       \
+    {                                                                                              \
+        .kind = PATTERN_GRADIENT, .direction = {1, 0, 0}, .frequency = 1                           \
+    }
 
 static bool is_near(double a, double b)
 {

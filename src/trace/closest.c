@@ -1,0 +1,141 @@
+/* The nearest surface along a ray.
+ *
+ * Each hit's t is known to within its error.  Hits of several objects that overlap within
+ * their errors are one place, and the object written first is what is seen there, whatever
+ * order the index offers them in; the error of the place then covers them all, so that a ray
+ * leaving it meets none of them again.  SPDX-License-Identifier: Apache-2.0 */
+#include "trace/trace_int.h"
+
+enum { TIES_MAX = 4 }; /* more objects than this in one place: the first ones stay */
+
+/* Two hits count as one place only if closer than this part of t, whatever their errors. */
+#define TIE_CAP 0x1p-30
+
+typedef struct Candidate {
+    Crossing crossing;
+    double error; /* half width of the interval t is in */
+    uint32_t object;
+} Candidate;
+
+typedef struct ClosestQuery {
+    TraceThread *thread;
+    const TracedObject *objects;
+    const uint32_t *index_objects;
+    RayKind kind;
+    double t, error; /* of the nearest so far */
+    int count;
+    Candidate found[TIES_MAX]; /* all that overlap the nearest, by object */
+} ClosestQuery;
+
+/* Drop what no longer overlaps the nearest hit. */
+static void drop_far(ClosestQuery *query)
+{
+    int kept = 0;
+    for (int i = 0; i < query->count; i++)
+        if (query->found[i].crossing.t - query->found[i].error <= query->t + query->error)
+            query->found[kept++] = query->found[i];
+    query->count = kept;
+}
+
+static void insert(ClosestQuery *query, const Crossing *crossing, double error, uint32_t object)
+{
+    int at = query->count;
+    while (at > 0 && query->found[at - 1].object > object)
+        at--;
+    if (at == TIES_MAX)
+        return;
+    if (query->count < TIES_MAX)
+        query->count++;
+    for (int i = query->count - 1; i > at; i--)
+        query->found[i] = query->found[i - 1];
+    query->found[at].crossing = *crossing;
+    query->found[at].error = error;
+    query->found[at].object = object;
+}
+
+static void test_object(ClosestQuery *query, uint32_t object, Ray *ray)
+{
+    const TracedObject *traced = &query->objects[object];
+    Crossing crossing;
+    if (traced->is_hidden[query->kind] ||
+        !shape_closest(traced->shape, ray, query->thread->shapes, &crossing))
+        return;
+    double t = crossing.t;
+    double error = fmin(crossing.t_error, t * TIE_CAP);
+    if (query->count == 0 || t + error < query->t - query->error) {
+        query->count = 0;
+        query->t = t;
+        query->error = error;
+    } else if (t - error > query->t + query->error) {
+        return;
+    } else if (t < query->t) {
+        query->t = t;
+        query->error = error;
+        drop_far(query);
+    }
+    insert(query, &crossing, error, object);
+    /* Far enough to see a hit at the same t whose error is no larger, and the same t again. */
+    ray->tmax = fmin(ray->tmax, nextafter(query->t + 2 * query->error, INFINITY));
+}
+
+static bool test_item(void *ctx, uint32_t item, Ray *ray)
+{
+    ClosestQuery *query = ctx;
+    test_object(query, query->index_objects[item], ray);
+    return false;
+}
+
+static void fill_hit(const ClosestQuery *query, const Ray *ray, Hit *out)
+{
+    const Candidate *first = &query->found[0];
+    const Crossing *crossing = &first->crossing;
+    const Scene *scene = query->thread->tracer->scene;
+    shape_point(crossing, ray, &out->point);
+    for (int i = 1; i < query->count; i++) {
+        const Candidate *other = &query->found[i];
+        double spread = fabs(other->crossing.t - crossing->t) + other->crossing.t_error;
+        out->point.p_error = fmax(out->point.p_error, spread + crossing->t_error);
+    }
+    out->t = crossing->t;
+    out->leaf = crossing->leaf;
+    out->surface = &scene->surfaces[crossing->leaf->surface];
+    out->object = &scene->objects[first->object];
+    out->part = crossing->part;
+    out->u = crossing->u;
+    out->v = crossing->v;
+    out->is_entering =
+        crossing->leaf_change != 0 ? crossing->leaf_change > 0 : v3_dot(out->point.ng, ray->d) < 0;
+}
+
+bool trace_closest(TraceThread *thread, const Ray *ray, RayKind kind, Hit *out)
+{
+    static const StatId counters[RAY_KIND_COUNT] = {STAT_CAMERA_RAYS, STAT_REFLECTED_RAYS,
+                                                    STAT_REFRACTED_RAYS, STAT_PHOTON_RAYS};
+    const Tracer *tracer = thread->tracer;
+    thread->stats.count[counters[kind]]++;
+    ClosestQuery query;
+    query.thread = thread;
+    query.objects = tracer->objects;
+    query.index_objects = tracer->index_objects;
+    query.kind = kind;
+    query.count = 0;
+    Ray rest = *ray;
+    for (uint32_t i = 0; i < tracer->unbounded_count; i++)
+        test_object(&query, tracer->unbounded[i], &rest);
+    if (tracer->index)
+        box_index_closest(tracer->index, &rest, test_item, &query);
+    if (query.count == 0)
+        return false;
+    fill_hit(&query, ray, out);
+    return true;
+}
+
+/* The index and the shapes compute with errors of the same size as the point's own, so four of
+ * them keep the surface behind the new ray. */
+#define PUSH 4.0
+
+Ray trace_ray_from(const ShapePoint *point, V3 d)
+{
+    double push = copysign(PUSH * point->p_error, v3_dot(d, point->ng));
+    return (Ray){v3_mad(point->p, push, point->ng), d, 0, INFINITY};
+}

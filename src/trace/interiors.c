@@ -1,0 +1,139 @@
+/* The interiors a ray is in, and how they change at a surface.
+ *
+ * The language pairs entering and leaving by object.  For objects made of closed solids the
+ * normal says which it is, so that a missed entry (a light or an eye on the surface, surfaces
+ * that coincide) is mended at the exit; for open ones, whose normals say little, a ray enters
+ * what it is not in and leaves what it is in.  SPDX-License-Identifier: Apache-2.0 */
+#include "trace/trace_int.h"
+
+/* Find the innermost entry of an object, preferring the same interior; -1: none. */
+static int entry_of(const Interiors *list, uint32_t object, const Interior *interior)
+{
+    int found = -1;
+    for (int i = list->count - 1; i >= 0; i--) {
+        if (list->object[i] != object)
+            continue;
+        if (list->in[i] == interior)
+            return i;
+        if (found < 0)
+            found = i;
+    }
+    return found;
+}
+
+static double innermost_ior(const Interiors *list, int count)
+{
+    return count > 0 ? list->in[count - 1]->ior : 1;
+}
+
+/* When the list is full the outermost entry goes. */
+static void push(Interiors *list, const Interior *interior, uint32_t object)
+{
+    if (list->count == INTERIORS_MAX) {
+        list->count--;
+        for (int i = 0; i < list->count; i++) {
+            list->in[i] = list->in[i + 1];
+            list->object[i] = list->object[i + 1];
+        }
+    }
+    list->in[list->count] = interior;
+    list->object[list->count++] = object;
+}
+
+static void drop(Interiors *list, int entry)
+{
+    list->count--;
+    for (int i = entry; i < list->count; i++) {
+        list->in[i] = list->in[i + 1];
+        list->object[i] = list->object[i + 1];
+    }
+}
+
+/* Copy the used part only. */
+static void copy(Interiors *to, const Interiors *from)
+{
+    to->count = from->count;
+    for (int i = 0; i < from->count; i++) {
+        to->in[i] = from->in[i];
+        to->object[i] = from->object[i];
+    }
+}
+
+InteriorStep interiors_step(const Tracer *tracer, const Hit *hit, const Interiors *before,
+                            Interiors *after)
+{
+    const Interior *interior = hit->surface->interior;
+    uint32_t object = (uint32_t)(hit->object - tracer->scene->objects);
+    int entry = before->count > 0 ? entry_of(before, object, interior) : -1;
+    bool is_entering = tracer->objects[object].is_closed ? hit->is_entering : entry < 0;
+    if (after)
+        copy(after, before);
+    if (is_entering) {
+        if (after)
+            push(after, interior, object);
+        return (InteriorStep){false, innermost_ior(before, before->count), interior->ior};
+    }
+    if (entry < 0)
+        return (InteriorStep){true, interior->ior, innermost_ior(before, before->count)};
+    if (after)
+        drop(after, entry);
+    if (entry < before->count - 1)
+        return (InteriorStep){true, interior->ior, interior->ior};
+    return (InteriorStep){true, interior->ior, innermost_ior(before, entry)};
+}
+
+/* Find the leaf that lends its interior to a point inside a shape: the first child that holds
+ * it, in an intersection one that was not inverted. */
+static const Shape *leaf_around(const Shape *shape, V3 p)
+{
+    while (shape->child_count > 0) {
+        const Shape *next = shape->children[0];
+        for (int i = 0; i < shape->child_count; i++) {
+            const Shape *child = shape->children[i];
+            if (!child->is_inverted && shape_is_inside(child, p)) {
+                next = child;
+                break;
+            }
+        }
+        shape = next;
+    }
+    return shape;
+}
+
+/* Volumes order the list: what is inside is smaller. */
+static double volume(Bound b)
+{
+    if (!bound_is_finite(b))
+        return INFINITY;
+    V3 size = v3_sub(b.hi, b.lo);
+    return size.x * size.y * size.z;
+}
+
+void interiors_at(const Tracer *tracer, V3 p, Interiors *out)
+{
+    double volumes[INTERIORS_MAX];
+    out->count = 0;
+    for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
+        const Object *object = &tracer->scene->objects[i];
+        Bound b = object->bound;
+        bool is_near = p.x >= b.lo.x && p.y >= b.lo.y && p.z >= b.lo.z && p.x <= b.hi.x &&
+                       p.y <= b.hi.y && p.z <= b.hi.z;
+        if (!is_near || !shape_is_solid(object->shape) || !shape_is_inside(object->shape, p))
+            continue;
+        double size = volume(b);
+        int at = out->count;
+        while (at > 0 && volumes[at - 1] < size)
+            at--;
+        if (out->count == INTERIORS_MAX)
+            continue;
+        for (int k = out->count++; k > at; k--) {
+            volumes[k] = volumes[k - 1];
+            out->in[k] = out->in[k - 1];
+            out->object[k] = out->object[k - 1];
+        }
+        const Shape *leaf = leaf_around(object->shape, p);
+        volumes[at] = size;
+        out->in[at] = tracer->scene->surfaces[leaf->surface].interior;
+        out->object[at] = i;
+    }
+}

@@ -1,0 +1,205 @@
+/* Shadow rays.
+ *
+ * One pass over the index looks for anything opaque and notes the objects that let light
+ * through; in most scenes that is all.  Otherwise the surfaces of the noted objects are
+ * visited in order of t (each object keeps its next crossing) and filter the light, and an
+ * interior absorbs along the stretch that ends where the ray leaves it.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "trace/trace_int.h"
+
+enum { FILTERS_FEW = 16 }; /* objects noted without asking for memory */
+
+/* An object that may let the ray pass. */
+typedef struct Filter {
+    uint32_t object;
+    bool is_started, is_inside; /* for objects whose normals do not tell */
+    Crossing next;
+} Filter;
+
+typedef struct ShadowQuery {
+    TraceThread *thread;
+    const Tracer *tracer;
+    bool blocks_targets;
+    uint32_t blocker;
+    int count, capacity;
+    Filter *filters;
+    Filter few[FILTERS_FEW];
+} ShadowQuery;
+
+/* Returns false when memory is out. */
+static bool note_filter(ShadowQuery *query, uint32_t object)
+{
+    if (query->count == query->capacity) {
+        Filter *more = ARENA_ARRAY(query->thread->scratch, Filter, (size_t)query->capacity * 2);
+        if (!more)
+            return false;
+        for (int i = 0; i < query->count; i++)
+            more[i] = query->filters[i];
+        query->filters = more;
+        query->capacity *= 2;
+    }
+    query->filters[query->count].object = object;
+    query->filters[query->count++].is_started = false;
+    return true;
+}
+
+/* Return true if any hit of the object blocks. */
+static bool may_block(const ShadowQuery *query, uint32_t object)
+{
+    ShadowKind kind = query->tracer->objects[object].shadow;
+    return kind == SHADOW_BLOCK || (kind == SHADOW_TARGET && query->blocks_targets);
+}
+
+/* Returns true if the object blocks all light; notes it if it may filter. */
+static bool test_object(ShadowQuery *query, uint32_t object, const Ray *ray)
+{
+    const TracedObject *traced = &query->tracer->objects[object];
+    if (traced->shadow == SHADOW_NONE)
+        return false;
+    if (!may_block(query, object) && note_filter(query, object))
+        return false;
+    Crossing crossing;
+    if (!shape_closest(traced->shape, ray, query->thread->shapes, &crossing))
+        return false;
+    query->blocker = object;
+    return true;
+}
+
+static bool test_item(void *ctx, uint32_t item, Ray *ray)
+{
+    ShadowQuery *query = ctx;
+    return test_object(query, query->tracer->index_objects[item], ray);
+}
+
+static bool find_blocker(ShadowQuery *query, const Ray *ray, int light)
+{
+    const Tracer *tracer = query->tracer;
+    uint32_t last = light >= 0 ? query->thread->blockers[light] : NO_OBJECT;
+    if (last != NO_OBJECT && may_block(query, last) && test_object(query, last, ray))
+        return true;
+    for (uint32_t i = 0; i < tracer->unbounded_count; i++)
+        if (test_object(query, tracer->unbounded[i], ray))
+            return true;
+    Ray rest = *ray;
+    return tracer->index && box_index_any(tracer->index, &rest, test_item, query);
+}
+
+static bool is_solid_texture(const Texture *texture)
+{
+    for (int i = 0; i < texture->layer_count; i++)
+        if (!texture->layers[i].pigment->is_solid)
+            return false;
+    return true;
+}
+
+/* Return what passes a texture at a point. */
+static Rgb texture_filter(const Texture *texture, const Interior *interior, V3 p, double cosine)
+{
+    Rgb filter = RGB_WHITE;
+    for (int i = 0; i < texture->layer_count; i++) {
+        filter = rgb_mul(filter, color5_through(pigment_at(texture->layers[i].pigment, p)));
+        if (interior->caustics != 0)
+            filter =
+                rgb_scale(filter, (float)(1 + pow(fabs(cosine), 45 * (double)interior->caustics)));
+    }
+    return filter;
+}
+
+/* Return what passes one crossing; `since` is t of the crossing before it. */
+static Rgb crossing_filter(const ShadowQuery *query, Filter *filter, const Ray *ray, double since)
+{
+    const Crossing *crossing = &filter->next;
+    const Surface *surface = &query->tracer->scene->surfaces[crossing->leaf->surface];
+    const Interior *interior = surface->interior;
+    if (!surface->may_transmit ||
+        (query->blocks_targets && surface->is_target && surface->photons.refraction == TRI_ON))
+        return RGB_BLACK;
+    /* The point is needed only if something depends on it. */
+    bool is_closed = query->tracer->objects[filter->object].is_closed;
+    if (is_closed && !surface->mesh_textures && !surface->inner_texture &&
+        interior->caustics == 0 && interior->fade_distance == 0 &&
+        is_solid_texture(surface->texture))
+        return texture_filter(surface->texture, interior, v3(0, 0, 0), 0);
+
+    ShapePoint point;
+    shape_point(crossing, ray, &point);
+    bool is_back = v3_dot(point.ng, ray->d) > 0, is_leaving = is_back;
+    if (!is_closed) {
+        is_leaving = filter->is_started ? filter->is_inside : is_back;
+        filter->is_started = true;
+        filter->is_inside = !is_leaving;
+    }
+    TextureChoice choice;
+    texture_choose(surface, crossing->leaf, crossing->part, crossing->u, crossing->v, is_back,
+                   &choice);
+    Rgb sum = RGB_BLACK;
+    for (int i = 0; i < choice.count; i++)
+        sum =
+            rgb_mad(sum, choice.weight[i],
+                    texture_filter(choice.texture[i], interior, point.p, v3_dot(point.ns, ray->d)));
+    if (is_leaving)
+        sum = rgb_mul(sum, interior_fade(interior, crossing->t - since, true));
+    return sum;
+}
+
+/* Move a filter to its first crossing behind t; drop it when there is none. */
+static void advance(ShadowQuery *query, int i, const Ray *ray, double t)
+{
+    Ray rest = *ray;
+    rest.tmin = t;
+    const TracedObject *traced = &query->tracer->objects[query->filters[i].object];
+    if (!shape_closest(traced->shape, &rest, query->thread->shapes, &query->filters[i].next))
+        query->filters[i] = query->filters[--query->count];
+}
+
+/* Visit the crossings of the noted objects in order of t; at equal t in written order. */
+static Rgb walk_filters(ShadowQuery *query, const Ray *ray)
+{
+    Rgb light = RGB_WHITE;
+    double since = 0;
+    for (int i = query->count - 1; i >= 0; i--)
+        advance(query, i, ray, ray->tmin);
+    while (query->count > 0 && !rgb_is_black(light)) {
+        int nearest = 0;
+        for (int i = 1; i < query->count; i++) {
+            const Filter *a = &query->filters[i], *b = &query->filters[nearest];
+            if (a->next.t < b->next.t || (a->next.t == b->next.t && a->object < b->object))
+                nearest = i;
+        }
+        double t = query->filters[nearest].next.t;
+        light = rgb_mul(light, crossing_filter(query, &query->filters[nearest], ray, since));
+        since = t;
+        advance(query, nearest, ray, t);
+    }
+    return light;
+}
+
+/* The parts of the distance to the light within which a hit is the light's own surface: the
+ * rounding of the light's place, of the direction and of t. */
+#define LIGHT_SLACK 0x1p-48
+
+Rgb trace_shadow(TraceThread *thread, const ShapePoint *from, V3 to, double distance, int light,
+                 bool blocks_targets)
+{
+    Ray ray = trace_ray_from(from, to);
+    ray.tmax = distance - distance * LIGHT_SLACK - 8 * from->p_error;
+    if (!(ray.tmax > 0))
+        return RGB_WHITE;
+    thread->stats.count[STAT_SHADOW_RAYS]++;
+    ShadowQuery query;
+    query.thread = thread;
+    query.tracer = thread->tracer;
+    query.blocks_targets = blocks_targets;
+    query.count = 0;
+    query.capacity = FILTERS_FEW;
+    query.filters = query.few;
+    if (find_blocker(&query, &ray, light)) {
+        if (light >= 0)
+            thread->blockers[light] = query.blocker;
+        return RGB_BLACK;
+    }
+    if (query.count == 0)
+        return RGB_WHITE;
+    thread->stats.count[STAT_SHADOW_FILTER_WALKS]++;
+    return walk_filters(&query, &ray);
+}

@@ -1,0 +1,68 @@
+/* What the files of trace/ share.  SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_TRACE_TRACE_INT_H
+#define PMS_TRACE_TRACE_INT_H
+
+#include "accel/accel.h"
+#include "trace/trace.h"
+
+/* What an object does to a shadow ray. */
+typedef enum ShadowKind {
+    SHADOW_NONE,   /* nothing */
+    SHADOW_TARGET, /* lets some pass, unless photon targets block: all of it is one */
+    SHADOW_FILTER, /* lets some pass */
+    SHADOW_BLOCK   /* every hit blocks */
+} ShadowKind;
+
+/* Per object, what queries ask for again and again. */
+typedef struct TracedObject {
+    const Shape *shape;
+    uint8_t shadow; /* ShadowKind */
+    bool is_hidden[RAY_KIND_COUNT];
+    bool is_closed; /* made of closed solids: normals tell entering from leaving */
+} TracedObject;
+
+struct Tracer {
+    const Scene *scene;
+    const Plan *plan;
+    TracedObject *objects;   /* as scene->objects */
+    BoxIndex *index;         /* over the bounded objects; NULL: there are none */
+    uint32_t *index_objects; /* item of the index to object; ascending */
+    uint32_t *unbounded;     /* objects apart, ascending */
+    uint32_t unbounded_count;
+    Bound bound;
+};
+
+enum { NO_OBJECT = UINT32_MAX };
+
+/* Which texture a surface shows at a point; up to three blended (corners of a mesh triangle). */
+typedef struct TextureChoice {
+    const Texture *texture[3];
+    float weight[3]; /* add up to 1 */
+    int count;
+} TextureChoice;
+
+/* Choose the texture of a surface point.
+ *
+ * part, u, v  of the crossing or hit.
+ * is_inside   met from the inside. */
+void texture_choose(const Surface *surface, const Shape *leaf, uint32_t part, double u, double v,
+                    bool is_inside, TextureChoice *out);
+
+/* The factor of metallic highlights and reflection at a cosine: from 1 at grazing angles to the
+ * surface's colour. */
+Rgb metallic_tint(float metallic, double cosine, Rgb color);
+
+/* The factor of thin-film interference; both cosines are taken by magnitude. */
+Rgb irid_factor(const Finish *finish, Rgb wavelength, double cos_light, double cos_view);
+
+/* What becomes of the interiors at a surface. */
+typedef struct InteriorStep {
+    bool is_leaving;
+    double ior_from, ior_to; /* equal: no bend */
+} InteriorStep;
+
+/* Find how a ray in `before` passes the surface of a hit; `after` may be NULL. */
+InteriorStep interiors_step(const Tracer *tracer, const Hit *hit, const Interiors *before,
+                            Interiors *after);
+
+#endif

@@ -1,0 +1,182 @@
+/* The tracer: the ray index over the objects of a scene, and what queries need of each.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "trace/trace_int.h"
+
+#include "base/mem.h"
+
+#include <string.h>
+
+/* Which surfaces the leaves of a shape have. */
+typedef struct LeafSummary {
+    bool may_transmit, may_block, has_filter_besides_targets, is_closed;
+} LeafSummary;
+
+static bool is_refracting_target(const Surface *surface)
+{
+    return surface->is_target && surface->photons.refraction == TRI_ON;
+}
+
+static bool is_closed_leaf(const Shape *leaf)
+{
+    switch (leaf->kind) {
+    case SHAPE_SPHERE:
+    case SHAPE_BOX:
+    case SHAPE_PLANE:
+    case SHAPE_TORUS:
+        return true;
+    case SHAPE_CONE:
+        return !leaf->u.cone.is_open;
+    default:
+        return false;
+    }
+}
+
+static void summarize(const Scene *scene, const Shape *shape, LeafSummary *sum)
+{
+    if (shape->clip_count > 0)
+        sum->is_closed = false;
+    for (int i = 0; i < shape->child_count; i++)
+        summarize(scene, shape->children[i], sum);
+    if (shape->kind >= SHAPE_UNION)
+        return;
+    const Surface *surface = &scene->surfaces[shape->surface];
+    sum->is_closed &= is_closed_leaf(shape);
+    if (!surface->may_transmit)
+        sum->may_block = true;
+    else if (!is_refracting_target(surface))
+        sum->has_filter_besides_targets = true;
+    sum->may_transmit |= surface->may_transmit;
+}
+
+static void describe_object(const Scene *scene, const Plan *plan, const Object *object,
+                            TracedObject *out)
+{
+    LeafSummary sum = {.is_closed = true};
+    summarize(scene, object->shape, &sum);
+    out->shape = object->shape;
+    out->is_closed = sum.is_closed;
+    out->is_hidden[RAY_CAMERA] = object->no_image;
+    out->is_hidden[RAY_REFRACTED] = object->no_image;
+    out->is_hidden[RAY_PHOTON] = object->no_image;
+    out->is_hidden[RAY_REFLECTED] = object->no_reflection;
+    if (object->no_shadow)
+        out->shadow = SHADOW_NONE;
+    else if (!sum.may_transmit || !plan_has(plan, FEATURE_TRANSPARENT_SHADOWS))
+        out->shadow = SHADOW_BLOCK;
+    else
+        out->shadow = sum.has_filter_besides_targets ? SHADOW_FILTER : SHADOW_TARGET;
+}
+
+/* Sort the objects into those with a box and those without; an empty box is never met. */
+static Status index_objects(Tracer *tracer, int threads, Diag *diag)
+{
+    const Scene *scene = tracer->scene;
+    uint32_t count = scene->object_count, bounded = 0;
+    Bound *boxes = mem_array(count + 1, sizeof *boxes);
+    tracer->index_objects = mem_array(count + 1, sizeof *tracer->index_objects);
+    tracer->unbounded = mem_array(count + 1, sizeof *tracer->unbounded);
+    Status status = OK;
+    if (!boxes || !tracer->index_objects || !tracer->unbounded) {
+        status = diag_no_memory(diag, "the ray index");
+        goto done;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        Bound bound = scene->objects[i].bound;
+        if (bound_is_empty(bound))
+            continue;
+        if (!bound_is_finite(bound)) {
+            tracer->unbounded[tracer->unbounded_count++] = i;
+            continue;
+        }
+        tracer->bound = bound_union(tracer->bound, bound);
+        tracer->index_objects[bounded] = i;
+        boxes[bounded++] = bound;
+    }
+    if (bounded > 0)
+        status = box_index_new(diag, boxes, bounded, threads, &tracer->index);
+done:
+    mem_free(boxes);
+    return status;
+}
+
+Status tracer_new(const Scene *scene, const Plan *plan, int threads, Diag *diag, Tracer **out)
+{
+    *out = NULL;
+    Tracer *tracer = mem_alloc(sizeof *tracer);
+    if (!tracer)
+        return diag_no_memory(diag, "the tracer");
+    tracer->scene = scene;
+    tracer->plan = plan;
+    tracer->bound = BOUND_EMPTY;
+    tracer->objects = mem_array((size_t)scene->object_count + 1, sizeof *tracer->objects);
+    if (!tracer->objects) {
+        tracer_free(tracer);
+        return diag_no_memory(diag, "the tracer");
+    }
+    for (uint32_t i = 0; i < scene->object_count; i++)
+        describe_object(scene, plan, &scene->objects[i], &tracer->objects[i]);
+    for (int i = 0; i < scene->light_count; i++)
+        tracer->bound = bound_add(tracer->bound, scene->lights[i].location);
+    if (bound_is_empty(tracer->bound))
+        tracer->bound = (Bound){{0, 0, 0}, {0, 0, 0}};
+    Status status = index_objects(tracer, threads, diag);
+    if (status != OK) {
+        tracer_free(tracer);
+        return status;
+    }
+    *out = tracer;
+    return OK;
+}
+
+void tracer_free(Tracer *tracer)
+{
+    if (!tracer)
+        return;
+    box_index_free(tracer->index);
+    mem_free(tracer->index_objects);
+    mem_free(tracer->unbounded);
+    mem_free(tracer->objects);
+    mem_free(tracer);
+}
+
+const Scene *tracer_scene(const Tracer *tracer)
+{
+    return tracer->scene;
+}
+
+const Plan *tracer_plan(const Tracer *tracer)
+{
+    return tracer->plan;
+}
+
+Bound tracer_bound(const Tracer *tracer)
+{
+    return tracer->bound;
+}
+
+Status trace_thread_init(TraceThread *thread, const Tracer *tracer, Diag *diag)
+{
+    memset(thread, 0, sizeof *thread);
+    size_t lights = (size_t)tracer->scene->light_count;
+    thread->tracer = tracer;
+    thread->shapes = shape_scratch_new();
+    thread->scratch = arena_new();
+    thread->blockers = mem_array(lights + 1, sizeof *thread->blockers);
+    if (!thread->shapes || !thread->scratch || !thread->blockers) {
+        trace_thread_done(thread);
+        return diag_no_memory(diag, "a tracing thread");
+    }
+    for (size_t i = 0; i < lights; i++)
+        thread->blockers[i] = NO_OBJECT;
+    return OK;
+}
+
+void trace_thread_done(TraceThread *thread)
+{
+    shape_scratch_free(thread->shapes);
+    arena_free(thread->scratch);
+    mem_free(thread->blockers);
+    thread->shapes = NULL;
+    thread->scratch = NULL;
+    thread->blockers = NULL;
+}
