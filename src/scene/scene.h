@@ -30,6 +30,7 @@ typedef struct Surface {
     const Texture *texture;       /* never NULL after scene_check */
     const Texture *inner_texture; /* interior_texture, or NULL: as texture */
     const Texture *const *mesh_textures; /* of a mesh with a texture list, else NULL */
+    int mesh_texture_count;
     const Interior *interior;     /* never NULL after scene_check */
     PhotonFlags photons;
     bool no_shadow, no_image, no_reflection, no_radiosity;

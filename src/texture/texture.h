@@ -98,6 +98,8 @@ typedef struct Finish {
               .reflection_falloff = 1,                                                             \
               .reflection_exponent = 1})
 
+enum { TEXTURE_LAYERS_MAX = 16 }; /* more are refused */
+
 typedef struct Layer {
     const Pigment *pigment; /* never NULL after scene_check */
     const Finish *finish;   /* never NULL after scene_check */

@@ -1,0 +1,380 @@
+/* From nodes to the scene: looks are handed down, top-level unions dissolved, and every leaf
+ * shape gets its Surface.
+ *
+ * The tree is walked twice with the same rules: once to count, so that the arrays of the scene
+ * are exact, and once to fill them.  SPDX-License-Identifier: Apache-2.0 */
+#include "scene/node.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* What a node hands down to its children. */
+typedef struct Looks {
+    const Texture *texture, *inner_texture;
+    const Texture *const *mesh_textures;
+    int mesh_texture_count;
+    const Interior *interior;
+    PhotonFlags photons;
+    Tri hollow, double_illuminate;
+    bool no_shadow, no_image, no_reflection, no_radiosity;
+    const char *name; /* of the innermost named object around, or NULL */
+    Bound bound;      /* what bounded_by promises */
+} Looks;
+
+typedef struct Finisher {
+    Scene *scene;
+    bool is_counting;
+    bool has_failed; /* memory is out */
+    const Texture *default_texture;
+    const Interior *default_interior;
+} Finisher;
+
+/* --- adding ------------------------------------------------------------------------------------
+ */
+
+const Texture *scene_build_default(SceneBuild *build)
+{
+    if (build->default_texture)
+        return build->default_texture;
+    Pigment *pigment = ARENA_NEW(build->arena, Pigment);
+    const Finish finish = FINISH_DEFAULT;
+    Finish *kept = arena_copy(build->arena, &finish, sizeof finish);
+    Layer *layer = ARENA_NEW(build->arena, Layer);
+    Texture *texture = ARENA_NEW(build->arena, Texture);
+    if (!pigment || !kept || !layer || !texture)
+        return NULL;
+    pigment->is_solid = true;
+    *layer = (Layer){pigment, kept};
+    *texture = (Texture){.layers = layer, .layer_count = 1};
+    build->default_texture = texture;
+    return texture;
+}
+
+bool scene_build_add(SceneBuild *build, Node *node)
+{
+    /* Children that have no texture either take it from here when the scene is finished. */
+    if (!node->texture && node->kind != NODE_LIGHT)
+        node->texture = scene_build_default(build);
+    if (build->node_count == build->node_capacity) {
+        size_t capacity = build->node_capacity ? build->node_capacity * 2 : 16;
+        Node **grown = ARENA_ARRAY(build->arena, Node *, capacity);
+        if (!grown)
+            return false;
+        if (build->node_count)
+            memcpy(grown, build->nodes, build->node_count * sizeof *grown);
+        build->nodes = grown;
+        build->node_capacity = capacity;
+    }
+    build->nodes[build->node_count++] = node;
+    return true;
+}
+
+/* --- looks --------------------------------------------------------------------------------------
+ */
+
+/* The box that bounded_by gives: inside all of its objects. */
+static Bound bound_of_nodes(Node *const *nodes, int count);
+
+static Bound bound_of_node(const Node *node)
+{
+    Bound bound = BOUND_ALL;
+    if (node->kind == NODE_LEAF) {
+        bound = shape_bound(node->shape);
+    } else if (node->is_inverted) {
+        bound = BOUND_ALL;
+    } else if (node->csg == SHAPE_INTERSECTION) {
+        bound = bound_of_nodes(node->children, node->child_count);
+    } else {
+        bound = BOUND_EMPTY;
+        for (int i = 0; i < node->child_count; i++)
+            bound = bound_union(bound, bound_of_node(node->children[i]));
+    }
+    return bound_intersect(bound, bound_of_nodes(node->clips, node->clip_count));
+}
+
+static Bound bound_of_nodes(Node *const *nodes, int count)
+{
+    Bound bound = BOUND_ALL;
+    for (int i = 0; i < count; i++)
+        bound = bound_intersect(bound, bound_of_node(nodes[i]));
+    return bound;
+}
+
+static Looks looks_of(const Node *node, const Looks *parent)
+{
+    Looks looks = *parent;
+    if (node->texture)
+        looks.texture = node->texture;
+    if (node->inner_texture)
+        looks.inner_texture = node->inner_texture;
+    if (node->interior)
+        looks.interior = node->interior;
+    if (node->has_photons)
+        looks.photons = node->photons;
+    if (node->hollow != TRI_UNSET)
+        looks.hollow = node->hollow;
+    if (looks.double_illuminate != TRI_ON && node->double_illuminate != TRI_UNSET)
+        looks.double_illuminate = node->double_illuminate;
+    looks.mesh_textures = node->mesh_textures;
+    looks.mesh_texture_count = node->mesh_texture_count;
+    looks.no_shadow |= node->no_shadow;
+    looks.no_image |= node->no_image;
+    looks.no_reflection |= node->no_reflection;
+    looks.no_radiosity |= node->no_radiosity;
+    if (node->is_named)
+        looks.name = node->name;
+    if (node->bound_count)
+        looks.bound = bound_intersect(looks.bound, bound_of_nodes(node->bounds, node->bound_count));
+    return looks;
+}
+
+/* The interior of an object that has none: from the old `ior` and `caustics` of a finish, or
+ * the one all such objects share. */
+static const Interior *interior_of_finish(Finisher *f, const Texture *texture)
+{
+    for (int i = texture->layer_count - 1; i >= 0; i--) {
+        const Finish *finish = texture->layers[i].finish;
+        if (finish->ior == 0 && finish->caustics == 0)
+            continue;
+        Interior interior = INTERIOR_DEFAULT;
+        interior.span = texture->span;
+        interior.ior = finish->ior != 0 ? finish->ior : 1;
+        interior.caustics = finish->caustics;
+        const Interior *kept = arena_copy(f->scene->arena, &interior, sizeof interior);
+        f->has_failed |= !kept;
+        return kept;
+    }
+    return f->default_interior;
+}
+
+static uint32_t add_surface(Finisher *f, const Node *node, const Looks *looks)
+{
+    Scene *scene = f->scene;
+    if (f->is_counting)
+        return scene->surface_count++;
+    const Texture *texture = looks->texture ? looks->texture : f->default_texture;
+    scene->surfaces[scene->surface_count] = (Surface){
+        .texture = texture,
+        .inner_texture = looks->inner_texture,
+        .mesh_textures = looks->mesh_textures,
+        .mesh_texture_count = looks->mesh_texture_count,
+        .interior = looks->interior ? looks->interior : interior_of_finish(f, texture),
+        .photons = looks->photons,
+        .no_shadow = looks->no_shadow,
+        .no_image = looks->no_image,
+        .no_reflection = looks->no_reflection,
+        .no_radiosity = looks->no_radiosity,
+        .is_double_illuminated = looks->double_illuminate == TRI_ON,
+        .is_hollow = looks->hollow == TRI_ON,
+        .object = scene->object_count,
+        .span = node->span,
+    };
+    return scene->surface_count++;
+}
+
+/* --- shapes --------------------------------------------------------------------------------------
+ */
+
+static void add_light(Finisher *f, const Node *node)
+{
+    Scene *scene = f->scene;
+    int number = scene->light_count++;
+    if (f->is_counting)
+        return;
+    Light *light = &scene->lights[number];
+    *light = *node->light;
+    light->span = node->span;
+    light->name = node->name;
+    if (!node->is_named) {
+        char name[32];
+        int length = snprintf(name, sizeof name, "light %d", number + 1);
+        light->name = arena_strndup(scene->arena, name, (size_t)length);
+        f->has_failed |= !light->name;
+    }
+}
+
+static void set_surface(Shape *shape, uint32_t surface)
+{
+    shape->surface = surface;
+    for (int i = 0; i < shape->child_count; i++)
+        set_surface(shape->children[i], surface);
+}
+
+static Shape *geometry_of(Finisher *f, const Node *node);
+
+/* Attach the clips of a node to its shape.  Clips show no surface; theirs is that of what they
+ * clip, so that no leaf is without one. */
+static bool add_clips(Finisher *f, const Node *node, Shape *shape, uint32_t surface)
+{
+    if (node->clip_count == 0)
+        return true;
+    shape->clips = ARENA_ARRAY(f->scene->arena, Shape *, (size_t)node->clip_count);
+    if (!shape->clips)
+        return false;
+    for (int i = 0; i < node->clip_count; i++) {
+        Shape *clip = geometry_of(f, node->clips[i]);
+        if (!clip)
+            return false;
+        set_surface(clip, surface);
+        shape->clips[shape->clip_count++] = clip;
+    }
+    return true;
+}
+
+/* Return the shape of a node without looks (for clips), or NULL when memory is out. */
+static Shape *geometry_of(Finisher *f, const Node *node)
+{
+    Shape *shape = node->shape;
+    if (node->kind == NODE_CSG) {
+        size_t count = (size_t)node->child_count;
+        Shape **children = ARENA_ARRAY(f->scene->arena, Shape *, count);
+        int used = 0;
+        for (int i = 0; children && i < node->child_count; i++)
+            if (node->children[i]->kind != NODE_LIGHT &&
+                !(children[used++] = geometry_of(f, node->children[i])))
+                return NULL;
+        shape = children ? shape_csg(f->scene->arena, node->csg, children, used) : NULL;
+        if (shape && node->is_inverted)
+            shape_invert(shape);
+    }
+    return shape && add_clips(f, node, shape, 0) ? shape : NULL;
+}
+
+static bool fail_memory(Finisher *f)
+{
+    f->has_failed = true;
+    return false;
+}
+
+/* Make the shape of a node and the surfaces of its leaves; lights inside are moved out.
+ * Returns false when memory is out; while counting, *out stays NULL. */
+static bool build_shape(Finisher *f, const Node *node, const Looks *parent, Shape **out);
+
+static bool build_csg(Finisher *f, const Node *node, const Looks *looks, Shape **out)
+{
+    Shape **children =
+        ARENA_ARRAY(f->scene->arena, Shape *, f->is_counting ? 0 : (size_t)node->child_count);
+    if (!children)
+        return fail_memory(f);
+    int used = 0;
+    for (int i = 0; i < node->child_count; i++) {
+        const Node *child = node->children[i];
+        Shape *shape = NULL;
+        if (child->kind == NODE_LIGHT)
+            add_light(f, child);
+        else if (!build_shape(f, child, looks, &shape))
+            return false;
+        if (shape)
+            children[used++] = shape;
+    }
+    if (f->is_counting)
+        return true;
+    if (used == 1 && !node->is_inverted && node->clip_count == 0) {
+        *out = children[0];
+        return true;
+    }
+    *out = shape_csg(f->scene->arena, node->csg, children, used);
+    if (!*out)
+        return fail_memory(f);
+    if (node->is_inverted)
+        shape_invert(*out);
+    return true;
+}
+
+static bool build_shape(Finisher *f, const Node *node, const Looks *parent, Shape **out)
+{
+    Looks looks = looks_of(node, parent);
+    uint32_t surface = f->scene->surface_count;
+    if (node->kind == NODE_CSG) {
+        if (!build_csg(f, node, &looks, out))
+            return false;
+    } else {
+        surface = add_surface(f, node, &looks);
+        if (f->is_counting)
+            return true;
+        *out = node->shape;
+        (*out)->surface = surface;
+    }
+    if (!f->is_counting && !add_clips(f, node, *out, surface))
+        return fail_memory(f);
+    return true;
+}
+
+/* --- objects
+ * -------------------------------------------------------------------------------------- */
+
+static void add_object(Finisher *f, const Node *node, const Looks *parent)
+{
+    Scene *scene = f->scene;
+    Looks looks = looks_of(node, parent);
+    Shape *shape = NULL;
+    uint32_t first_surface = scene->surface_count;
+    if (!build_shape(f, node, parent, &shape))
+        return;
+    if (scene->surface_count == first_surface)
+        return; /* nothing but lights, or nothing at all */
+    uint32_t number = scene->object_count++;
+    if (f->is_counting)
+        return;
+    Bound bound = shape_bound(shape);
+    if (bound_is_empty(bound)) { /* as an intersection of things apart: nothing to see */
+        scene->surface_count = first_surface;
+        scene->object_count--;
+        return;
+    }
+    Bound promised = bound_intersect(bound, looks.bound);
+    if (!bound_is_finite(bound))
+        bound = bound_is_finite(promised) && !bound_is_empty(promised) ? promised : BOUND_ALL;
+    scene->objects[number] = (Object){.shape = shape,
+                                      .bound = bound,
+                                      .span = node->span,
+                                      .name = looks.name ? looks.name : node->name};
+}
+
+/* Add a node at top level: unions without clips fall apart into their members. */
+static void add_top(Finisher *f, const Node *node, const Looks *parent)
+{
+    if (f->has_failed)
+        return;
+    if (node->kind == NODE_LIGHT) {
+        add_light(f, node);
+        return;
+    }
+    bool is_dissolved = node->kind == NODE_CSG && node->csg == SHAPE_UNION && !node->is_inverted &&
+                        node->clip_count == 0;
+    if (!is_dissolved) {
+        add_object(f, node, parent);
+        return;
+    }
+    Looks looks = looks_of(node, parent);
+    for (int i = 0; i < node->child_count; i++)
+        add_top(f, node->children[i], &looks);
+}
+
+static void walk(Finisher *f, const SceneBuild *build, bool is_counting)
+{
+    f->is_counting = is_counting;
+    f->scene->object_count = f->scene->surface_count = 0;
+    f->scene->light_count = 0;
+    const Looks none = {.photons = PHOTON_FLAGS_DEFAULT, .bound = BOUND_ALL};
+    for (size_t i = 0; i < build->node_count; i++)
+        add_top(f, build->nodes[i], &none);
+}
+
+Status scene_build_finish(SceneBuild *build, Scene *scene, Diag *diag)
+{
+    const Interior interior = INTERIOR_DEFAULT;
+    Finisher f = {.scene = scene,
+                  .default_texture = scene_build_default(build),
+                  .default_interior = arena_copy(scene->arena, &interior, sizeof interior)};
+    if (!f.default_texture || !f.default_interior)
+        return diag_no_memory(diag, "the scene");
+    walk(&f, build, true);
+    scene->objects = ARENA_ARRAY(scene->arena, Object, scene->object_count);
+    scene->surfaces = ARENA_ARRAY(scene->arena, Surface, scene->surface_count);
+    scene->lights = ARENA_ARRAY(scene->arena, Light, (size_t)scene->light_count);
+    if (f.has_failed || !scene->objects || !scene->surfaces || !scene->lights)
+        return diag_no_memory(diag, "the scene");
+    walk(&f, build, false);
+    return f.has_failed ? diag_no_memory(diag, "the scene") : OK;
+}

@@ -1,0 +1,78 @@
+/* What all block readers need: braces, words, checked numbers, growing arrays.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "sdl/read_int.h"
+
+#include <string.h>
+
+const char *read_word(Parser *p, const Token *token)
+{
+    const Span s = token->span;
+    if (!s.source)
+        return "object";
+    char *word = parse_alloc(p, s.end - s.begin + 1);
+    memcpy(word, s.source->text + s.begin, s.end - s.begin);
+    return word;
+}
+
+Token read_open(Parser *p)
+{
+    Token word = parse_next(p);
+    parse_expect(p, TOKEN_LBRACE, read_word(p, &word));
+    return word;
+}
+
+bool read_close(Parser *p)
+{
+    return parse_accept(p, TOKEN_RBRACE);
+}
+
+double read_finite(Parser *p, const char *what, Span *span_or_null)
+{
+    Span first = parse_peek(p)->span;
+    double value = parse_float(p);
+    Span span = span_join(first, parse_last_span(p));
+    if (!isfinite(value))
+        parse_fail(p, span, "%s wants a finite number, got %g", what, value);
+    if (span_or_null)
+        *span_or_null = span;
+    return value;
+}
+
+double read_above_zero(Parser *p, const char *what)
+{
+    Span span;
+    double value = read_finite(p, what, &span);
+    if (!(value > 0))
+        parse_fail(p, span, "%s wants a number above 0, got %g", what, value);
+    return value;
+}
+
+double read_not_negative(Parser *p, const char *what)
+{
+    Span span;
+    double value = read_finite(p, what, &span);
+    if (!(value >= 0))
+        parse_fail(p, span, "%s wants a number of at least 0, got %g", what, value);
+    return value;
+}
+
+Rgb read_rgb(Parser *p, const char *what)
+{
+    Span first = parse_peek(p)->span;
+    Rgb value = parse_rgb(p);
+    if (!rgb_is_finite(value))
+        parse_fail(p, span_join(first, parse_last_span(p)), "%s wants finite numbers", what);
+    return value;
+}
+
+void *read_grow(Parser *p, void *items, size_t count, size_t *capacity, size_t item_size)
+{
+    if (count < *capacity)
+        return items;
+    size_t grown_capacity = *capacity ? *capacity * 2 : 8;
+    void *grown = parse_no_null(p, arena_array(parse_arena(p), grown_capacity, item_size));
+    if (count)
+        memcpy(grown, items, count * item_size);
+    *capacity = grown_capacity;
+    return grown;
+}

@@ -1,0 +1,111 @@
+/* What the block readers share.  Each read_* function is named after the rule of grammar/
+ * pms.ebnf that it reads; unless told otherwise the next token is the rule's first word.
+ * SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_SDL_READ_INT_H
+#define PMS_SDL_READ_INT_H
+
+#include "sdl/sdl_int.h"
+
+/* --- small helpers ---------------------------------------------------------------------------- */
+
+/* Take the keyword and its opening brace; return the keyword's token. */
+Token read_open(Parser *p);
+
+/* Return true, having taken it, if the closing brace of a block comes next. */
+bool read_close(Parser *p);
+
+/* Return a terminated copy of the word at a token, without backquotes. */
+const char *read_word(Parser *p, const Token *token);
+
+/* Read a float that must be finite; `what` names it in messages; *span gets its place. */
+double read_finite(Parser *p, const char *what, Span *span_or_null);
+
+/* Read a finite float that must be above 0, or at least 0. */
+double read_above_zero(Parser *p, const char *what);
+double read_not_negative(Parser *p, const char *what);
+
+/* Read a float or vector of colour components and check that it is finite. */
+Rgb read_rgb(Parser *p, const char *what);
+
+/* Grow a full array of the scene arena for one more item. */
+void *read_grow(Parser *p, void *items, size_t count, size_t *capacity, size_t item_size);
+
+/* --- objects
+ * -------------------------------------------------------------------------------------- */
+
+/* Read an object if the next token begins one (a keyword or the name of an object); NULL if
+ * not.  The node is the caller's own. */
+Node *read_object(Parser *p);
+
+/* The same for keywords only, not for names. */
+Node *read_object_block(Parser *p);
+
+/* Make a leaf, or a node without anything (for shapes too small to be seen). */
+Node *read_leaf(Parser *p, const Shape *shape);
+Node *read_empty(Parser *p);
+
+/* The parameters between a shape's brace and its modifiers. */
+Node *read_sphere(Parser *p);
+Node *read_box(Parser *p);
+Node *read_cylinder(Parser *p);
+Node *read_cone(Parser *p);
+Node *read_torus(Parser *p);
+Node *read_plane(Parser *p);
+Node *read_disc(Parser *p);
+Node *read_triangle(Parser *p);
+Node *read_smooth_triangle(Parser *p);
+Node *read_mesh(Parser *p);
+Node *read_mesh2(Parser *p);
+Node *read_union(Parser *p);
+Node *read_merge(Parser *p);
+Node *read_intersection(Parser *p);
+Node *read_difference(Parser *p);
+
+/* light_source, after its opening brace up to and including the closing one. */
+Node *read_light_source(Parser *p);
+
+/* Modifiers up to and including the closing brace of the object. */
+void read_object_modifiers(Parser *p, Node *node, TokenKind object_word);
+
+/* The items of clipped_by and bounded_by. */
+void read_clipped_by(Parser *p, Node *node);
+void read_bounded_by(Parser *p, Node *node);
+
+/* photons{} of an object; changes what is given. */
+void read_object_photons(Parser *p, PhotonFlags *flags);
+
+/* A triangle without area, or with a normal without direction, is dropped with a warning. */
+bool read_triangle_is_flat(const V3 corner[3]);
+
+/* --- looks
+ * ----------------------------------------------------------------------------------------- */
+
+/* Blocks with their keyword.  `base` is what they start from and is not changed. */
+const Pigment *read_pigment(Parser *p, const Pigment *base);
+const Finish *read_finish(Parser *p, const Finish *base);
+const Texture *read_texture(Parser *p);
+const Interior *read_interior(Parser *p, const Interior *base_or_null);
+const Material *read_material(Parser *p);
+const ColorMap *read_color_map(Parser *p);
+
+/* Return a texture with another pigment or finish in its top layer. */
+const Texture *read_with_pigment(Parser *p, const Texture *texture, const Pigment *pigment);
+const Texture *read_with_finish(Parser *p, const Texture *texture, const Finish *finish);
+
+/* Return `over` laid on `under`; `under` may be NULL. */
+const Texture *read_layers(Parser *p, const Texture *under, const Texture *over);
+
+/* Return the texture objects start from (#default). */
+const Texture *read_default_texture(Parser *p);
+
+/* --- the rest of a scene
+ * ------------------------------------------------------------------------------ */
+
+const Camera *read_camera(Parser *p);
+const Sky *read_sky_sphere(Parser *p);
+void read_background(Parser *p);
+void read_global_settings(Parser *p);
+void read_global_photons(Parser *p, PhotonSettings *photons);
+void read_pms_settings(Parser *p, PmsSettings *pms);
+
+#endif

@@ -1,0 +1,97 @@
+/* interior and material.  SPDX-License-Identifier: Apache-2.0 */
+#include "sdl/read_int.h"
+
+static void read_interior_item(Parser *p, Interior *interior)
+{
+    Token head = *parse_peek(p);
+    switch (head.kind) {
+    case KW_IOR:
+        parse_next(p);
+        interior->ior = read_above_zero(p, "ior");
+        break;
+    case KW_CAUSTICS:
+        parse_next(p);
+        interior->caustics = (float)read_not_negative(p, "caustics");
+        break;
+    case KW_FADE_DISTANCE:
+        parse_next(p);
+        interior->fade_distance = read_not_negative(p, "fade_distance");
+        break;
+    case KW_FADE_POWER:
+        parse_next(p);
+        interior->fade_power = read_not_negative(p, "fade_power");
+        break;
+    case KW_FADE_COLOR:
+    case KW_FADE_COLOUR:
+        parse_next(p);
+        interior->fade_color = read_rgb(p, "fade_color");
+        break;
+    case KW_DISPERSION:
+    case KW_DISPERSION_SAMPLES:
+        parse_fail_not_yet(p, head.span, "dispersion");
+    case KW_MEDIA:
+        parse_fail_not_yet(p, head.span, "media");
+    default:
+        parse_fail_here(p, "in an interior");
+    }
+}
+
+const Interior *read_interior(Parser *p, const Interior *base_or_null)
+{
+    Token word = read_open(p);
+    Interior interior = base_or_null ? *base_or_null : INTERIOR_DEFAULT;
+    const Value *value = parse_accept_value(p, VALUE_INTERIOR);
+    if (value)
+        interior = *(const Interior *)value->node;
+    interior.span = word.span;
+    while (!read_close(p))
+        read_interior_item(p, &interior);
+    return parse_copy(p, &interior, sizeof interior);
+}
+
+static void move_material(Parser *p, Material *material)
+{
+    Xform xform = parse_xform(p);
+    if (material->texture)
+        material->texture =
+            parse_no_null(p, texture_transform(parse_arena(p), material->texture, &xform));
+    if (material->inner_texture)
+        material->inner_texture =
+            parse_no_null(p, texture_transform(parse_arena(p), material->inner_texture, &xform));
+}
+
+static void read_material_item(Parser *p, Material *material)
+{
+    if (parse_is_xform(p)) {
+        move_material(p, material);
+        return;
+    }
+    Token head = *parse_peek(p);
+    switch (head.kind) {
+    case KW_TEXTURE:
+        material->texture = read_layers(p, material->texture, read_texture(p));
+        break;
+    case KW_INTERIOR_TEXTURE:
+        if (!material->texture)
+            parse_fail(p, head.span, "interior_texture wants a texture before it");
+        material->inner_texture = read_layers(p, material->inner_texture, read_texture(p));
+        break;
+    case KW_INTERIOR:
+        material->interior = read_interior(p, material->interior);
+        break;
+    default:
+        parse_fail_here(p, "in a material");
+    }
+}
+
+const Material *read_material(Parser *p)
+{
+    read_open(p);
+    Material material = {0};
+    const Value *value = parse_accept_value(p, VALUE_MATERIAL);
+    if (value)
+        material = *(const Material *)value->node;
+    while (!read_close(p))
+        read_material_item(p, &material);
+    return parse_copy(p, &material, sizeof material);
+}
