@@ -9,7 +9,7 @@
 #include "photon/gather.h"
 #include "trace/trace.h"
 
-/* Light by where it comes from; they add up to the beauty. */
+/* Light by where it comes from; the parts add up to the beauty. */
 typedef enum LightPart {
     PART_DIRECT,   /* ambient, emission, lights, highlights and the background */
     PART_CAUSTIC,  /* from the caustic map */
@@ -17,10 +17,13 @@ typedef enum LightPart {
     PART_COUNT
 } LightPart;
 
-typedef struct EyeMaps {
+typedef struct EyeOptions {
+    int width, height; /* of the film, pixels */
+    bool has_alpha;    /* the background shows in alpha instead of being opaque */
+    uint64_t seed;
     const PhotonMap *caustic, *global; /* NULL: none */
     GatherLimits caustic_limits, global_limits;
-} EyeMaps;
+} EyeOptions;
 
 typedef struct EyeSample {
     Rgb part[PART_COUNT]; /* radiance */
@@ -32,14 +35,14 @@ typedef struct EyeSample {
 
 /* Per-thread state of the pass. */
 typedef struct EyeThread EyeThread;
-Status eye_thread_new(const Tracer *tracer, const EyeMaps *maps, uint64_t seed, Diag *diag,
-                      EyeThread **out);
+Status eye_thread_new(const Tracer *tracer, const EyeOptions *options, Diag *diag, EyeThread **out);
 void eye_thread_free(EyeThread *eye, Stats *add_to);
 
 /* Trace sample `index` through film position (x, y), pixels from the top left corner (a
- * pixel's centre is at +0.5), of a width x height film.  The random numbers depend on pixel,
- * index and seed only. */
-void eye_sample(EyeThread *eye, double x, double y, int width, int height, uint32_t pixel,
-                uint32_t index, EyeSample *out);
+ * pixel's centre is at +0.5).  The random numbers depend on pixel, index and seed only.  With
+ * focal blur one sample is many rays, spread over a pixel's area around (x, y).
+ *
+ * Returns false, counts it and makes the sample black when some of it is not a number. */
+bool eye_sample(EyeThread *eye, double x, double y, uint32_t pixel, uint32_t index, EyeSample *out);
 
 #endif

@@ -32,6 +32,8 @@ typedef struct PlanOptions {
 typedef struct Plan {
     PlanRow rows[FEATURE_COUNT];
     bool *light_makes_caustics; /* per light: takes part in the caustic map */
+    bool is_unlit;              /* quality 0 and 1: surfaces show their pigment, nothing more */
+    bool has_ambient;           /* finish{ambient} counts (not beside real indirect light) */
     long caustic_photons;       /* to emit towards targets, all lights; 0: from spacing */
     long global_photons;        /* to emit into the scene, all lights */
 } Plan;
@@ -43,6 +45,11 @@ static inline bool plan_has(const Plan *plan, FeatureId feature)
 {
     return plan->rows[feature].is_on;
 }
+
+/* Return true if photons from `light` are to be reflected (refracted) by a surface: the object or
+ * the light asks for it and neither forbids it.  A target nobody marked counts as asking. */
+bool plan_photons_reflect(const Light *light, const Surface *surface);
+bool plan_photons_refract(const Light *light, const Surface *surface);
 
 /* Return the name of a feature as explain and --stats show it. */
 const char *feature_name(FeatureId feature);

@@ -1,0 +1,125 @@
+/* Area lights: a grid of points whose shadows are averaged.
+ *
+ * The average is the language's: a rectangle of the grid is the mean of its corners, or of its
+ * four parts when its corners disagree, so the weights are not those of a plain mean.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "eye/eye_int.h"
+
+#include "base/rng.h"
+
+/* Corners further apart than this, over the channels of the light that arrives, are a shadow's
+ * edge. */
+#define EDGE_DIFFERENCE 0.1f
+
+/* Keeps the centre of a circular light's grid off the undefined point of its map. */
+#define CIRCULAR_SHIFT 0.001
+
+typedef struct ShadowGrid {
+    EyeThread *eye;
+    const Light *light;
+    const SurfaceSample *s;
+    V3 to_center; /* from the surface to the light's centre */
+    Rgb color;    /* of the light as it would arrive */
+    AreaFrame frame;
+    bool blocks_targets;
+} ShadowGrid;
+
+typedef struct GridRect {
+    int i1, j1, i2, j2;
+} GridRect;
+
+AreaFrame area_frame(const Light *light, V3 to_light)
+{
+    const AreaLight *area = &light->area;
+    if (!area->is_oriented)
+        return (AreaFrame){area->axis1, area->axis2};
+    V3 helper = fabs(to_light.z) > 0.99 ? v3(0, 1, 0) : v3(0, 0, 1);
+    V3 across = v3_unit(v3_cross(to_light, helper));
+    double length = v3_len(area->axis1);
+    return (AreaFrame){v3_scale(across, length), v3_scale(v3_cross(to_light, across), length)};
+}
+
+/* Place of grid line k of n, -0.5 to 0.5. */
+static double grid_place(int k, int n, double jitter)
+{
+    return n > 1 ? (k + jitter) / (n - 1) - 0.5 : 0;
+}
+
+V3 area_offset(const Light *light, const AreaFrame *frame, int i, int j, Rng *rng)
+{
+    const AreaLight *area = &light->area;
+    double shift1 = area->has_jitter ? rng_double(rng) - 0.5 : 0;
+    double shift2 = area->has_jitter ? rng_double(rng) - 0.5 : 0;
+    double a = grid_place(i, area->size1, shift1), b = grid_place(j, area->size2, shift2);
+    if (area->is_circular || area->is_oriented) {
+        a += CIRCULAR_SHIFT;
+        b += CIRCULAR_SHIFT;
+        double length = sqrt(a * a + b * b);
+        double squeeze = length > 0 ? fmax(fabs(a), fabs(b)) / length : 0;
+        a *= squeeze;
+        b *= squeeze;
+    }
+    return v3_mad(v3_scale(frame->axis1, a), b, frame->axis2);
+}
+
+static Rgb grid_at(ShadowGrid *grid, int i, int j)
+{
+    EyeThread *eye = grid->eye;
+    int cell = j * grid->light->area.size1 + i;
+    if (eye->grid_marks[cell] != eye->grid_mark) {
+        V3 offset = area_offset(grid->light, &grid->frame, i, j, &eye->rng);
+        V3 to = v3_add(grid->to_center, offset);
+        double distance = v3_len(to);
+        eye->grid[cell] = distance > 0
+                              ? trace_shadow(&eye->trace, &grid->s->at, v3_scale(to, 1 / distance),
+                                             distance, grid->blocks_targets)
+                              : RGB_WHITE;
+        eye->grid_marks[cell] = eye->grid_mark;
+    }
+    return eye->grid[cell];
+}
+
+static bool has_edge(const ShadowGrid *grid, Rgb a, Rgb b)
+{
+    Rgb d = rgb_mul(rgb_sub(a, b), grid->color);
+    return fabsf(d.r) + fabsf(d.g) + fabsf(d.b) > EDGE_DIFFERENCE;
+}
+
+static Rgb mean_of_4(Rgb a, Rgb b, Rgb c, Rgb d)
+{
+    return rgb_scale(rgb_add(rgb_add(a, b), rgb_add(c, d)), 0.25f);
+}
+
+static Rgb rect_mean(ShadowGrid *grid, GridRect r, int level)
+{
+    Rgb a = grid_at(grid, r.i1, r.j1), b = grid_at(grid, r.i2, r.j1);
+    Rgb c = grid_at(grid, r.i1, r.j2), d = grid_at(grid, r.i2, r.j2);
+    bool is_splittable = r.i2 - r.i1 > 1 || r.j2 - r.j1 > 1;
+    if (!is_splittable || (level >= grid->light->area.adaptive && !has_edge(grid, a, b) &&
+                           !has_edge(grid, a, c) && !has_edge(grid, b, d) && !has_edge(grid, c, d)))
+        return mean_of_4(a, b, c, d);
+    int i_low = (r.i1 + r.i2) / 2, i_high = (r.i1 + r.i2 + 1) / 2;
+    int j_low = (r.j1 + r.j2) / 2, j_high = (r.j1 + r.j2 + 1) / 2;
+    level++;
+    a = rect_mean(grid, (GridRect){r.i1, r.j1, i_low, j_low}, level);
+    b = rect_mean(grid, (GridRect){i_high, r.j1, r.i2, j_low}, level);
+    c = rect_mean(grid, (GridRect){r.i1, j_high, i_low, r.j2}, level);
+    d = rect_mean(grid, (GridRect){i_high, j_high, r.i2, r.j2}, level);
+    return mean_of_4(a, b, c, d);
+}
+
+Rgb area_shadow(EyeThread *eye, const EyeLight *light, const SurfaceSample *s,
+                const LightSample *center)
+{
+    const AreaLight *area = &light->light->area;
+    ShadowGrid grid = {.eye = eye,
+                       .light = light->light,
+                       .s = s,
+                       .to_center = v3_scale(center->to_light, center->distance),
+                       .color = center->color,
+                       .frame = area_frame(light->light, center->to_light),
+                       .blocks_targets =
+                           light->makes_caustics && s->surface->photons.is_collecting};
+    eye->grid_mark++;
+    return rect_mean(&grid, (GridRect){0, 0, area->size1 - 1, area->size2 - 1}, 0);
+}

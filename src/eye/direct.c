@@ -1,0 +1,130 @@
+/* Light that reaches a surface: from the light sources, and from the photon maps.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "eye/eye_int.h"
+
+/* Photons at glancing angles count as if they came at this cosine: their power is spread over
+ * the surface already, and a highlight must not be divided by next to nothing. */
+#define PHOTON_COSINE_MIN 0.1
+
+Rgb layers_direct(const SurfaceSample *s, V3 to_light, bool has_highlights)
+{
+    Rgb sum = RGB_BLACK;
+    for (int i = 0; i < s->layer_count; i++)
+        sum = rgb_add(sum, layer_direct(&s->layers[i], s, to_light, has_highlights,
+                                        s->surface->is_double_illuminated));
+    return sum;
+}
+
+/* Direct light averaged over the grid of an area light, each point shining from its own place;
+ * without shadows. */
+static Rgb area_illumination(EyeThread *eye, const EyeLight *light, const SurfaceSample *s,
+                             const LightSample *center)
+{
+    const Light *source = light->light;
+    AreaFrame frame = area_frame(source, center->to_light);
+    Rgb sum = RGB_BLACK;
+    for (int j = 0; j < source->area.size2; j++)
+        for (int i = 0; i < source->area.size1; i++) {
+            V3 offset = area_offset(source, &frame, i, j, &eye->rng);
+            LightSample at = light_at(source, v3_add(source->location, offset), s->at.p);
+            if (rgb_is_black(at.color))
+                continue;
+            Rgb sent = layers_direct(s, at.to_light, light->has_highlights);
+            sum = rgb_add(sum, rgb_mul(sent, at.color));
+        }
+    return rgb_scale(sum, 1.0f / (float)(source->area.size1 * source->area.size2));
+}
+
+static Rgb light_shadow(EyeThread *eye, const EyeLight *light, const SurfaceSample *s,
+                        const LightSample *sample)
+{
+    if (!light->has_shadow)
+        return RGB_WHITE;
+    if (light->is_area)
+        return area_shadow(eye, light, s, sample);
+    bool blocks_targets = light->makes_caustics && s->surface->photons.is_collecting;
+    return trace_shadow(&eye->trace, &s->at, sample->to_light, sample->distance, blocks_targets);
+}
+
+static Rgb light_from(EyeThread *eye, const EyeLight *light, const SurfaceSample *s)
+{
+    LightSample sample = light_at(light->light, light->light->location, s->at.p);
+    Rgb sent;
+    if (light->is_area && light->light->area.has_illumination) {
+        sent = area_illumination(eye, light, s, &sample);
+    } else {
+        if (rgb_is_black(sample.color))
+            return RGB_BLACK;
+        sent = rgb_mul(layers_direct(s, sample.to_light, light->has_highlights), sample.color);
+    }
+    if (rgb_is_black(sent))
+        return RGB_BLACK;
+    return rgb_mul(sent, light_shadow(eye, light, s, &sample));
+}
+
+Rgb direct_light(EyeThread *eye, const SurfaceSample *s)
+{
+    Rgb sum = RGB_BLACK;
+    for (int i = 0; i < eye->light_count; i++)
+        sum = rgb_add(sum, light_from(eye, &eye->lights[i], s));
+    return sum;
+}
+
+/* Does it matter where light comes from, beyond its cosine? */
+static bool is_directional(const SurfaceSample *s)
+{
+    for (int i = 0; i < s->layer_count; i++) {
+        const Finish *finish = s->layers[i].finish;
+        if (finish->phong != 0 || finish->specular != 0 || finish->brilliance != 1)
+            return true;
+    }
+    return false;
+}
+
+static Rgb directional_caustic(EyeThread *eye, const SurfaceSample *s)
+{
+    const GatheredPhoton *photons;
+    const EyeOptions *options = &eye->options;
+    int count = photon_gather_list(options->caustic, s->at.p, s->ng, &options->caustic_limits,
+                                   eye->gather, &photons);
+    eye->trace.stats.count[STAT_GATHERED] += (uint64_t)count;
+    Rgb sum = RGB_BLACK;
+    for (int i = 0; i < count; i++) {
+        double cosine = fmax(PHOTON_COSINE_MIN, v3_dot(photons[i].from, s->ng));
+        Rgb sent = layers_direct(s, photons[i].from, plan_has(eye->plan, FEATURE_HIGHLIGHTS));
+        sum = rgb_mad(sum, (float)(1 / cosine), rgb_mul(photons[i].irradiance, sent));
+    }
+    return sum;
+}
+
+/* Light of a map that a diffuse surface sends on in all directions alike. */
+static Rgb diffuse_gather(EyeThread *eye, const PhotonMap *map, const GatherLimits *limits,
+                          const SurfaceSample *s)
+{
+    Rgb reflectance = surface_diffuse(s);
+    if (rgb_is_black(reflectance))
+        return RGB_BLACK;
+    Rgb irradiance;
+    int count = photon_gather(map, s->at.p, s->ng, limits, eye->gather, &irradiance);
+    eye->trace.stats.count[STAT_GATHERS]++;
+    eye->trace.stats.count[STAT_GATHERED] += (uint64_t)count;
+    return rgb_mul(irradiance, reflectance);
+}
+
+Rgb caustic_light(EyeThread *eye, const SurfaceSample *s)
+{
+    const EyeOptions *options = &eye->options;
+    if (!options->caustic || !s->surface->photons.is_collecting)
+        return RGB_BLACK;
+    if (!is_directional(s))
+        return diffuse_gather(eye, options->caustic, &options->caustic_limits, s);
+    eye->trace.stats.count[STAT_GATHERS]++;
+    return directional_caustic(eye, s);
+}
+
+Rgb indirect_light(EyeThread *eye, const SurfaceSample *s)
+{
+    if (!eye->options.global)
+        return RGB_BLACK;
+    return diffuse_gather(eye, eye->options.global, &eye->options.global_limits, s);
+}

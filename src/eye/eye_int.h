@@ -1,0 +1,79 @@
+/* Inside the eye pass.  SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_EYE_EYE_INT_H
+#define PMS_EYE_EYE_INT_H
+
+#include "eye/camera.h"
+#include "eye/eye.h"
+
+/* A light as the pass uses it. */
+typedef struct EyeLight {
+    const Light *light;
+    bool has_shadow, is_area, has_highlights;
+    bool makes_caustics; /* what targets refract of it comes with the caustic map */
+} EyeLight;
+
+/* Radiance along a ray, by where the light comes from. */
+typedef struct Radiance {
+    Rgb part[PART_COUNT];
+    float transmit; /* what the ray lets through of a picture behind everything */
+} Radiance;
+
+struct EyeThread {
+    TraceThread trace;
+    const Scene *scene;
+    const Plan *plan;
+    EyeOptions options;
+    GatherScratch *gather;
+    EyeLight *lights;
+    int light_count;
+    CameraRays camera;
+    bool has_eye_point;         /* all camera rays start at one point */
+    Interiors camera_interiors; /* around that point */
+    double *blur_limits;        /* variance of the mean below which n rays are enough */
+    Rng rng;                    /* of the sample being traced */
+    /* Shadow samples of the area light at hand, valid where the mark is the current one. */
+    Rgb *grid;
+    uint32_t *grid_marks, grid_mark;
+};
+
+/* Rays of focal blur before their variance is looked at. */
+enum { BLUR_MIN = 8 };
+
+/* The two axes of an area light as seen from a point in direction to_light of it. */
+typedef struct AreaFrame {
+    V3 axis1, axis2;
+} AreaFrame;
+AreaFrame area_frame(const Light *light, V3 to_light);
+
+/* Return how far point (i, j) of an area light's grid lies from its centre.  rng is used by a
+ * light with jitter. */
+V3 area_offset(const Light *light, const AreaFrame *frame, int i, int j, Rng *rng);
+
+/* Return the fraction of an area light's light that arrives, averaged over its grid as the
+ * language does it; `center` is the light as seen from its centre. */
+Rgb area_shadow(EyeThread *eye, const EyeLight *light, const SurfaceSample *s,
+                const LightSample *center);
+
+/* Return the light that all layers of s send to the viewer per unit of light from a direction. */
+Rgb layers_direct(const SurfaceSample *s, V3 to_light, bool has_highlights);
+
+/* Return the light of all light sources that a surface sends to the viewer. */
+Rgb direct_light(EyeThread *eye, const SurfaceSample *s);
+
+/* Return the light of the caustic map (of the global map) that a surface sends to the viewer. */
+Rgb caustic_light(EyeThread *eye, const SurfaceSample *s);
+Rgb indirect_light(EyeThread *eye, const SurfaceSample *s);
+
+/* Return what a ray that met nothing sees.  transmit: how much of a picture behind the sky shows
+ * through it; nothing in a mirror. */
+Rgb sky_light(const EyeThread *eye, V3 direction, bool is_mirrored, float *transmit);
+
+/* Trace a camera ray; depth, normal and albedo of `first` are taken from the first surface. */
+void camera_radiance(EyeThread *eye, const Ray *ray, const Interiors *interiors, Radiance *out,
+                     EyeSample *first);
+
+/* Fill limits[0..n] for up to n rays: the average of m is good enough when its variance is
+ * below limits[m]. */
+void blur_limits_fill(double *limits, int n, double variance, double confidence);
+
+#endif

@@ -1,0 +1,229 @@
+/* The eye pass: what each thread keeps, and one sample of the film.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "eye/eye_int.h"
+
+#include "base/mem.h"
+#include "math/sample.h"
+
+/* Names the random numbers of this pass. */
+enum { EYE_RNG = 0x657965 };
+
+/* --- a thread's state --------------------------------------------------------------------- */
+
+static EyeLight eye_light(const Plan *plan, const EyeOptions *options, const Light *light,
+                          bool makes_caustics)
+{
+    bool has_area = light->area.size1 > 0 && light->area.size2 > 0;
+    return (EyeLight){.light = light,
+                      .has_shadow = !light->is_shadowless && plan_has(plan, FEATURE_SHADOWS),
+                      .is_area =
+                          has_area && !light->is_shadowless && plan_has(plan, FEATURE_AREA_LIGHTS),
+                      .has_highlights = !light->is_shadowless && plan_has(plan, FEATURE_HIGHLIGHTS),
+                      .makes_caustics = makes_caustics && options->caustic};
+}
+
+static Status make_lights(EyeThread *eye, Diag *diag)
+{
+    const Scene *scene = eye->scene;
+    size_t cells = 0;
+    eye->lights = mem_array((size_t)scene->light_count + 1, sizeof *eye->lights);
+    if (!eye->lights)
+        return diag_no_memory(diag, "lights");
+    for (int i = 0; i < scene->light_count; i++) {
+        const Light *light = &scene->lights[i];
+        if (rgb_is_black(light->color))
+            continue;
+        EyeLight made =
+            eye_light(eye->plan, &eye->options, light, eye->plan->light_makes_caustics[i]);
+        eye->lights[eye->light_count++] = made;
+        size_t its_cells = made.is_area ? (size_t)light->area.size1 * (size_t)light->area.size2 : 0;
+        if (its_cells > cells)
+            cells = its_cells;
+    }
+    eye->grid = mem_array(cells + 1, sizeof *eye->grid);
+    eye->grid_marks = mem_array(cells + 1, sizeof *eye->grid_marks);
+    return eye->grid && eye->grid_marks ? OK : diag_no_memory(diag, "area lights");
+}
+
+static Status make_blur(EyeThread *eye, Diag *diag)
+{
+    if (!plan_has(eye->plan, FEATURE_FOCAL_BLUR))
+        return OK;
+    const Camera *camera = &eye->scene->camera;
+    eye->blur_limits = mem_array((size_t)camera->blur_samples + 1, sizeof *eye->blur_limits);
+    if (!eye->blur_limits)
+        return diag_no_memory(diag, "focal blur");
+    blur_limits_fill(eye->blur_limits, camera->blur_samples, camera->blur_variance,
+                     camera->blur_confidence);
+    return OK;
+}
+
+Status eye_thread_new(const Tracer *tracer, const EyeOptions *options, Diag *diag, EyeThread **out)
+{
+    EyeThread *eye = mem_alloc(sizeof *eye);
+    *out = NULL;
+    if (!eye)
+        return diag_no_memory(diag, "an eye thread");
+    Status status = trace_thread_init(&eye->trace, tracer, diag);
+    if (status != OK) {
+        mem_free(eye);
+        return status;
+    }
+    eye->scene = tracer_scene(tracer);
+    eye->plan = tracer_plan(tracer);
+    eye->options = *options;
+    eye->gather = gather_scratch_new();
+    if (!eye->gather)
+        status = diag_no_memory(diag, "gathering photons");
+    if (status == OK)
+        status = make_lights(eye, diag);
+    if (status == OK)
+        status = make_blur(eye, diag);
+    if (status != OK) {
+        eye_thread_free(eye, NULL);
+        return status;
+    }
+    const Camera *camera = &eye->scene->camera;
+    camera_rays_init(&eye->camera, camera, options->width, options->height);
+    eye->has_eye_point = camera->kind == CAMERA_PERSPECTIVE && !eye->blur_limits;
+    if (eye->has_eye_point)
+        interiors_at(tracer, camera->location, &eye->camera_interiors);
+    *out = eye;
+    return OK;
+}
+
+void eye_thread_free(EyeThread *eye, Stats *add_to)
+{
+    if (!eye)
+        return;
+    if (add_to)
+        stats_add(add_to, &eye->trace.stats);
+    trace_thread_done(&eye->trace);
+    gather_scratch_free(eye->gather);
+    mem_free(eye->lights);
+    mem_free(eye->grid);
+    mem_free(eye->grid_marks);
+    mem_free(eye->blur_limits);
+    mem_free(eye);
+}
+
+/* --- one sample --------------------------------------------------------------------------- */
+
+static void trace_camera_ray(EyeThread *eye, const Ray *ray, EyeSample *out)
+{
+    Radiance seen;
+    *out = (EyeSample){.depth = INFINITY};
+    if (eye->has_eye_point) {
+        camera_radiance(eye, ray, &eye->camera_interiors, &seen, out);
+    } else {
+        Interiors inside;
+        interiors_at(eye->trace.tracer, ray->o, &inside);
+        camera_radiance(eye, ray, &inside, &seen, out);
+    }
+    for (int i = 0; i < PART_COUNT; i++)
+        out->part[i] = seen.part[i];
+    out->alpha = 1 - seen.transmit;
+}
+
+/* Sums over the rays of focal blur. */
+typedef struct Blur {
+    int count;
+    double part[PART_COUNT][3], alpha, albedo[3];
+    double mean[3], squares[3]; /* of the whole light: mean, and squared deviations from it */
+    double depth;
+    V3 normal;
+} Blur;
+
+static void add_rgb(double sum[3], Rgb c)
+{
+    sum[0] += (double)c.r;
+    sum[1] += (double)c.g;
+    sum[2] += (double)c.b;
+}
+
+static void blur_add(Blur *blur, const EyeSample *ray)
+{
+    double whole[3] = {0};
+    blur->count++;
+    for (int i = 0; i < PART_COUNT; i++) {
+        add_rgb(blur->part[i], ray->part[i]);
+        add_rgb(whole, ray->part[i]);
+    }
+    for (int i = 0; i < 3; i++) {
+        double delta = whole[i] - blur->mean[i];
+        blur->mean[i] += delta / blur->count;
+        blur->squares[i] += delta * (whole[i] - blur->mean[i]);
+    }
+    add_rgb(blur->albedo, ray->albedo);
+    blur->alpha += (double)ray->alpha;
+    blur->depth = fmin(blur->depth, ray->depth);
+    blur->normal = v3_add(blur->normal, ray->normal);
+}
+
+/* Is the variance of the mean below the limit in every channel? */
+static bool blur_is_done(const Blur *blur, const double *limits)
+{
+    int n = blur->count;
+    if (n < BLUR_MIN || n % 4 != 0)
+        return false;
+    double worst = fmax(blur->squares[0], fmax(blur->squares[1], blur->squares[2]));
+    return worst < limits[n] * (n - 1) * n;
+}
+
+static Rgb mean_rgb(const double sum[3], int count)
+{
+    return rgb((float)(sum[0] / count), (float)(sum[1] / count), (float)(sum[2] / count));
+}
+
+static void blur_mean(const Blur *blur, EyeSample *out)
+{
+    for (int i = 0; i < PART_COUNT; i++)
+        out->part[i] = mean_rgb(blur->part[i], blur->count);
+    out->alpha = (float)(blur->alpha / blur->count);
+    out->depth = blur->depth;
+    out->normal = v3_scale(blur->normal, 1.0 / blur->count);
+    out->albedo = mean_rgb(blur->albedo, blur->count);
+}
+
+static void blurred_sample(EyeThread *eye, double x, double y, EyeSample *out)
+{
+    uint64_t place_key = rng_u64(&eye->rng), lens_key = rng_u64(&eye->rng);
+    Blur blur = {.depth = INFINITY};
+    for (int i = 0; i < eye->scene->camera.blur_samples; i++) {
+        V2 place = sample_2d((uint32_t)i, place_key);
+        V2 lens = warp_disk(sample_2d((uint32_t)i, lens_key));
+        Ray ray = camera_lens_ray(&eye->camera, x + place.u - 0.5, y + place.v - 0.5, lens);
+        trace_camera_ray(eye, &ray, out);
+        blur_add(&blur, out);
+        if (blur_is_done(&blur, eye->blur_limits))
+            break;
+    }
+    blur_mean(&blur, out);
+}
+
+/* The depth alone may be infinite. */
+static bool sample_is_finite(const EyeSample *s)
+{
+    for (int i = 0; i < PART_COUNT; i++)
+        if (!rgb_is_finite(s->part[i]))
+            return false;
+    return isfinite(s->alpha) && !isnan(s->depth) && v3_is_finite(s->normal) &&
+           rgb_is_finite(s->albedo);
+}
+
+bool eye_sample(EyeThread *eye, double x, double y, uint32_t pixel, uint32_t index, EyeSample *out)
+{
+    eye->rng = rng_at(eye->options.seed, EYE_RNG, (uint64_t)pixel << 32 | index);
+    arena_reset(eye->trace.scratch);
+    eye->trace.stats.count[STAT_SAMPLES]++;
+    if (eye->blur_limits) {
+        blurred_sample(eye, x, y, out);
+    } else {
+        Ray ray = camera_ray(&eye->camera, x, y);
+        trace_camera_ray(eye, &ray, out);
+    }
+    if (!stat_rare(&eye->trace.stats, STAT_NAN_SAMPLE, !sample_is_finite(out)))
+        return true;
+    *out = (EyeSample){.depth = INFINITY};
+    return false;
+}

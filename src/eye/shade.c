@@ -1,0 +1,222 @@
+/* Shading: what a ray brings back, with the language's finish arithmetic.
+ *
+ * The ray that goes on through a surface is followed in a loop, since what it brings back is
+ * only multiplied by what it passed; reflections recurse, since a reflection exponent bends
+ * their sum.  SPDX-License-Identifier: Apache-2.0 */
+#include "eye/eye_int.h"
+
+/* Surfaces one path may pass: straight ones do not count as trace levels, so a stack of
+ * perfectly clear sheets would have no end but this. */
+enum { PATH_SURFACES_MAX = 10000 };
+
+/* A ray on its way, and what became of it so far. */
+typedef struct Path {
+    Ray ray;
+    RayKind kind;
+    int level;        /* rays traced up to here that count */
+    float weight;     /* the largest share of the picture it can still have */
+    bool is_straight; /* the ray goes on from a surface that did not bend it */
+    bool is_mirrored; /* seen in a reflection */
+    Interiors inside;
+    Rgb through;    /* share of what comes along the ray that counts */
+    float transmit; /* the same for the picture behind everything */
+} Path;
+
+static void radiance(EyeThread *eye, Path *path, Radiance *out, EyeSample *first);
+
+static void add_part(Radiance *out, LightPart part, Rgb through, Rgb light)
+{
+    out->part[part] = rgb_add(out->part[part], rgb_mul(through, light));
+}
+
+static Rgb radiance_sum(const Radiance *r)
+{
+    return rgb_add(rgb_add(r->part[PART_DIRECT], r->part[PART_CAUSTIC]), r->part[PART_INDIRECT]);
+}
+
+/* Ambient light, emission, and in unlit pictures the pigment itself. */
+static Rgb own_light(const EyeThread *eye, const SurfaceSample *s)
+{
+    const Plan *plan = eye->plan;
+    Rgb sum = RGB_BLACK;
+    for (int i = 0; i < s->layer_count; i++) {
+        const SurfaceLayer *layer = &s->layers[i];
+        Rgb glow = layer->finish->emission;
+        if (plan->is_unlit)
+            glow = RGB_WHITE;
+        else if (plan->has_ambient)
+            glow =
+                rgb_add(glow, rgb_mul(layer->finish->ambient, eye->scene->settings.ambient_light));
+        Rgb seen = rgb_scale(rgb_mul(layer->above, layer->color), layer->opacity);
+        sum = rgb_add(sum, rgb_mul(seen, glow));
+    }
+    return sum;
+}
+
+static float channel_power(float sum, float power)
+{
+    return sum > 0 ? powf(sum, power) / sum : 0;
+}
+
+/* Bend the sum of the parts to sum^(1/exponent), each part in proportion. */
+static void apply_exponent(Radiance *light, float exponent)
+{
+    Rgb sum = radiance_sum(light);
+    float power = 1 / exponent;
+    Rgb factor =
+        rgb(channel_power(sum.r, power), channel_power(sum.g, power), channel_power(sum.b, power));
+    for (int i = 0; i < PART_COUNT; i++)
+        light->part[i] = rgb_mul(light->part[i], factor);
+}
+
+static float reflection_weight(const SurfaceLayer *layer)
+{
+    const Finish *finish = layer->finish;
+    if (finish->is_fresnel)
+        return rgb_max(layer->reflect);
+    return fmaxf(rgb_max(finish->reflection_min), rgb_max(finish->reflection_max));
+}
+
+/* May a ray of this weight be traced?  Rays that go straight on need a level too. */
+static bool may_trace(EyeThread *eye, int level, float weight)
+{
+    const SceneSettings *settings = &eye->scene->settings;
+    if (!((double)weight >= settings->adc_bailout))
+        return false;
+    return !stat_rare(&eye->trace.stats, STAT_TRACE_LIMIT, level >= settings->max_trace_level);
+}
+
+static void reflect_layer(EyeThread *eye, const Path *path, const SurfaceSample *s,
+                          const SurfaceLayer *layer, Radiance *out)
+{
+    float weight = path->weight * reflection_weight(layer);
+    if (!may_trace(eye, path->level, weight))
+        return;
+    eye->trace.stats.count[STAT_REFLECTED_RAYS]++;
+    Path mirrored;
+    mirrored.ray = trace_ray_from(&s->at, layer->reflect_dir);
+    mirrored.kind = RAY_REFLECTED;
+    mirrored.level = path->level;
+    mirrored.weight = weight;
+    mirrored.is_straight = false;
+    mirrored.is_mirrored = true;
+    mirrored.inside = path->inside;
+    mirrored.through = RGB_WHITE;
+    mirrored.transmit = 1;
+    Radiance seen;
+    radiance(eye, &mirrored, &seen, NULL);
+    if (layer->finish->reflection_exponent != 1)
+        apply_exponent(&seen, layer->finish->reflection_exponent);
+    Rgb share = rgb_mul(path->through, layer->reflect);
+    for (int i = 0; i < PART_COUNT; i++)
+        add_part(out, (LightPart)i, share, seen.part[i]);
+}
+
+static bool same_normal(V3 a, V3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+/* Mirrors show the whole of what they see: the layers above do not filter it.  Where total
+ * reflection takes all the light, layers that would mirror the same ray are passed over. */
+static void add_reflections(EyeThread *eye, const Path *path, const SurfaceSample *s, Radiance *out)
+{
+    for (int i = 0; i < s->layer_count; i++) {
+        const SurfaceLayer *layer = &s->layers[i];
+        if (rgb_is_black(layer->reflect))
+            continue;
+        if (s->is_total_reflection && same_normal(layer->n, s->layers[0].n))
+            continue;
+        reflect_layer(eye, path, s, layer, out);
+    }
+}
+
+/* Turn the path into the ray that goes on through the surface; false: none does. */
+static bool go_on(EyeThread *eye, Path *path, const SurfaceSample *s)
+{
+    if (s->is_total_reflection) {
+        path->transmit = 0;
+        path->is_mirrored = true;
+        path->kind = RAY_REFLECTED;
+    } else {
+        path->transmit *= rgb_grey(s->through);
+        path->through = rgb_mul(path->through, s->through);
+        path->weight *= rgb_max_abs(s->through);
+        path->kind = RAY_REFRACTED;
+        path->inside = s->inside_after;
+    }
+    if (!may_trace(eye, path->level, path->weight))
+        return false;
+    eye->trace.stats.count[s->is_total_reflection ? STAT_REFLECTED_RAYS : STAT_REFRACTED_RAYS]++;
+    path->is_straight = s->is_straight && !s->is_total_reflection;
+    path->ray = trace_ray_from(&s->at, s->transmit_dir);
+    return true;
+}
+
+static void describe_first(const Hit *hit, const SurfaceSample *s, EyeSample *first)
+{
+    Rgb albedo = RGB_BLACK;
+    for (int i = 0; i < s->layer_count; i++) {
+        const SurfaceLayer *layer = &s->layers[i];
+        albedo = rgb_mad(albedo, layer->opacity, rgb_mul(layer->above, layer->color));
+    }
+    first->depth = hit->t;
+    first->normal = s->layers[0].n;
+    first->albedo = albedo;
+}
+
+static void add_surface(EyeThread *eye, const Path *path, const SurfaceSample *s, Radiance *out)
+{
+    Rgb direct = own_light(eye, s);
+    if (plan_has(eye->plan, FEATURE_LIGHTS))
+        direct = rgb_add(direct, direct_light(eye, s));
+    add_part(out, PART_DIRECT, path->through, direct);
+    if (eye->options.caustic)
+        add_part(out, PART_CAUSTIC, path->through, caustic_light(eye, s));
+    if (eye->options.global)
+        add_part(out, PART_INDIRECT, path->through, indirect_light(eye, s));
+    if (plan_has(eye->plan, FEATURE_REFLECTION))
+        add_reflections(eye, path, s, out);
+}
+
+/* Follow one path; the caller has made sure that it may be traced. */
+static void radiance(EyeThread *eye, Path *path, Radiance *out, EyeSample *first)
+{
+    SurfaceSample s;
+    *out = (Radiance){.transmit = 0};
+    for (int surfaces = 0; surfaces < PATH_SURFACES_MAX; surfaces++) {
+        Hit hit;
+        if (!trace_closest(&eye->trace, &path->ray, path->kind, &hit)) {
+            float behind;
+            Rgb sky = sky_light(eye, path->ray.d, path->is_mirrored, &behind);
+            add_part(out, PART_DIRECT, path->through, sky);
+            out->transmit = path->transmit * behind;
+            return;
+        }
+        if (!path->is_straight)
+            path->level++;
+        surface_sample(&eye->trace, &path->ray, &hit, &path->inside, &s);
+        if (first && surfaces == 0)
+            describe_first(&hit, &s, first);
+        path->through = rgb_mul(path->through, s.segment);
+        add_surface(eye, path, &s, out);
+        bool is_followed = s.is_total_reflection ||
+                           (s.has_transmission && plan_has(eye->plan, FEATURE_REFRACTION));
+        if (!is_followed || !go_on(eye, path, &s))
+            return;
+    }
+    eye->trace.stats.count[STAT_TRACE_LIMIT]++;
+}
+
+void camera_radiance(EyeThread *eye, const Ray *ray, const Interiors *interiors, Radiance *out,
+                     EyeSample *first)
+{
+    Path path = {.ray = *ray,
+                 .kind = RAY_CAMERA,
+                 .weight = 1,
+                 .inside = *interiors,
+                 .through = RGB_WHITE,
+                 .transmit = 1};
+    eye->trace.stats.count[STAT_CAMERA_RAYS]++;
+    radiance(eye, &path, out, first);
+}

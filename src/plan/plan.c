@@ -1,0 +1,337 @@
+/* The plan.
+ *
+ * One pass over the surfaces and lights finds the first of each kind that calls for an effect;
+ * then each row is filled by a function of its own, from that evidence and the options.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "plan/plan.h"
+
+#include "math/eps.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+enum {
+    QUALITY_LIGHTS = 2,      /* below: pigments only */
+    QUALITY_SHADOWS = 4,     /* shadow rays, area lights as points */
+    QUALITY_AREA_LIGHTS = 5, /* soft shadows */
+    QUALITY_REFRACTION = 6,  /* light through surfaces */
+    QUALITY_REFLECTION = 8,
+    QUALITY_PHOTONS = 9
+};
+
+/* Photons sent into the scene for indirect light when the scene names no number. */
+enum { GLOBAL_PHOTONS_DEFAULT = 200000 };
+
+/* The first surface or light that shows each trait, and how many do. */
+typedef struct Evidence {
+    const Surface *transmitting, *reflecting, *absorbing, *highlighted, *filtering, *target;
+    const Surface *blocking; /* casts a shadow */
+    const Light *light;      /* with any colour */
+    const Light *shadowing;  /* not shadowless */
+    const Light *area;       /* an area light that casts shadows */
+    const Light *lit_area;   /* one with area_illumination */
+    const Light *caustic_light;
+    int targets, caustic_lights;
+} Evidence;
+
+const char *feature_name(FeatureId feature)
+{
+    static const char *const names[] = {
+#define X(id, name, text) name,
+#include "plan/feature.def"
+#undef X
+    };
+    return names[feature];
+}
+
+const char *feature_text(FeatureId feature)
+{
+    static const char *const texts[] = {
+#define X(id, name, text) text,
+#include "plan/feature.def"
+#undef X
+    };
+    return texts[feature];
+}
+
+/* --- evidence --------------------------------------------------------------------------- */
+
+static bool light_shines(const Light *light)
+{
+    return rgb_max_abs(light->color) > EPS_LANGUAGE;
+}
+
+static bool finish_has_highlights(const Finish *finish)
+{
+    return finish->phong != 0 || finish->specular != 0;
+}
+
+static bool texture_has_highlights(const Texture *texture)
+{
+    for (int i = 0; texture && i < texture->layer_count; i++)
+        if (finish_has_highlights(texture->layers[i].finish))
+            return true;
+    return false;
+}
+
+static bool surface_has_highlights(const Surface *surface)
+{
+    if (texture_has_highlights(surface->texture) || texture_has_highlights(surface->inner_texture))
+        return true;
+    for (int i = 0; i < surface->mesh_texture_count; i++)
+        if (texture_has_highlights(surface->mesh_textures[i]))
+            return true;
+    return false;
+}
+
+static bool photons_do(Tri of_light, Tri of_object, bool is_unmarked)
+{
+    if (of_light == TRI_OFF || of_object == TRI_OFF)
+        return false;
+    return of_light == TRI_ON || of_object == TRI_ON || is_unmarked;
+}
+
+bool plan_photons_reflect(const Light *light, const Surface *surface)
+{
+    return surface->may_reflect && photons_do(light->photon_reflection, surface->photons.reflection,
+                                              !surface->photons.is_target);
+}
+
+bool plan_photons_refract(const Light *light, const Surface *surface)
+{
+    return surface->may_transmit &&
+           photons_do(light->photon_refraction, surface->photons.refraction,
+                      !surface->photons.is_target);
+}
+
+static bool light_makes_caustics(const Scene *scene, const Light *light)
+{
+    if (light->is_shadowless || !light_shines(light) || !(light->photon_share > 0))
+        return false;
+    for (uint32_t i = 0; i < scene->surface_count; i++) {
+        const Surface *surface = &scene->surfaces[i];
+        if (surface->is_target &&
+            (plan_photons_reflect(light, surface) || plan_photons_refract(light, surface)))
+            return true;
+    }
+    return false;
+}
+
+static void first_surface(const Surface **slot, const Surface *surface, bool is_such)
+{
+    if (is_such && !*slot)
+        *slot = surface;
+}
+
+static void first_light(const Light **slot, const Light *light, bool is_such)
+{
+    if (is_such && !*slot)
+        *slot = light;
+}
+
+static void look_at_surface(const Surface *s, Evidence *found)
+{
+    first_surface(&found->transmitting, s, s->may_transmit);
+    first_surface(&found->reflecting, s, s->may_reflect);
+    first_surface(&found->absorbing, s, s->may_transmit && s->interior->fade_distance > 0);
+    first_surface(&found->highlighted, s, surface_has_highlights(s));
+    first_surface(&found->blocking, s, !s->no_shadow);
+    first_surface(&found->filtering, s, s->may_transmit && !s->no_shadow);
+    first_surface(&found->target, s, s->is_target);
+    found->targets += s->is_target;
+}
+
+static void look_at_light(const Scene *scene, const Light *light, bool *makes_caustics,
+                          Evidence *found)
+{
+    if (!light_shines(light))
+        return;
+    *makes_caustics = light_makes_caustics(scene, light);
+    found->caustic_lights += *makes_caustics;
+    first_light(&found->light, light, true);
+    first_light(&found->shadowing, light, !light->is_shadowless);
+    first_light(&found->area, light, light->area.size1 > 0 && !light->is_shadowless);
+    first_light(&found->lit_area, light,
+                light->area.size1 > 0 && !light->is_shadowless && light->area.has_illumination);
+    first_light(&found->caustic_light, light, *makes_caustics);
+}
+
+/* --- rows ------------------------------------------------------------------------------- */
+
+static bool row_set(PlanRow *row, bool is_on, Span why, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+static bool row_set(PlanRow *row, bool is_on, Span why, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    vsnprintf(row->reason, sizeof row->reason, format, args);
+    va_end(args);
+    row->is_on = is_on;
+    row->why = why;
+    return is_on;
+}
+
+/* Rule a row out for the quality asked for; returns whether it was. */
+static bool row_below(PlanRow *row, int quality, int needed)
+{
+    if (quality >= needed)
+        return false;
+    row_set(row, false, SPAN_NONE, "quality %d (from %d on)", quality, needed);
+    return true;
+}
+
+static void plan_caustics(const Scene *scene, const PlanOptions *options, const Evidence *found,
+                          PlanRow *row)
+{
+    const PhotonSettings *photons = &scene->settings.photons;
+    if (row_below(row, options->quality, QUALITY_PHOTONS))
+        return;
+    if (!found->transmitting && !found->reflecting)
+        row_set(row, false, SPAN_NONE, "no surface reflects or transmits");
+    else if (options->has_no_photons)
+        row_set(row, false, SPAN_NONE, "switched off on the command line");
+    else if (!photons->is_on)
+        row_set(row, false, SPAN_NONE,
+                "no photons{} in global_settings: transparent objects cast filtered shadows");
+    else if (photons->gather_max <= 0)
+        row_set(row, false, photons->span, "photons{} gathers no photons");
+    else if (!found->target)
+        row_set(row, false, photons->span, "photons{}, but nothing is a target");
+    else if (!found->caustic_light)
+        row_set(row, false, found->target->span, "%s",
+                found->shadowing ? "no light is reflected or refracted by a target"
+                                 : "no light casts shadows");
+    else
+        row_set(row, true, photons->span, "photons{}, %d target surface%s, %d light%s",
+                found->targets, found->targets == 1 ? "" : "s", found->caustic_lights,
+                found->caustic_lights == 1 ? "" : "s");
+}
+
+static void plan_indirect(const Scene *scene, const PlanOptions *options, const Evidence *found,
+                          PlanRow *row)
+{
+    const PmsSettings *pms = &scene->settings.pms;
+    if (row_below(row, options->quality, QUALITY_PHOTONS))
+        return;
+    if (!options->has_indirect && !pms->has_indirect)
+        row_set(row, false, SPAN_NONE, "not asked for (gi)");
+    else if (options->has_no_photons)
+        row_set(row, false, SPAN_NONE, "switched off on the command line");
+    else if (!found->light || scene->surface_count == 0)
+        row_set(row, false, pms->span, "asked for, but there is no light or no surface");
+    else
+        row_set(row, true, pms->span, "%s; finish ambient does not count",
+                options->has_indirect ? "asked for on the command line" : "gi in pms{}");
+}
+
+static void plan_lights(const PlanOptions *options, const Evidence *found, Plan *plan)
+{
+    PlanRow *rows = plan->rows;
+    int quality = options->quality;
+    if (!row_below(&rows[FEATURE_LIGHTS], quality, QUALITY_LIGHTS))
+        row_set(&rows[FEATURE_LIGHTS], found->light, found->light ? found->light->span : SPAN_NONE,
+                "%s", found->light ? "a light source" : "no light source");
+
+    PlanRow *row = &rows[FEATURE_SHADOWS];
+    if (!row_below(row, quality, QUALITY_SHADOWS)) {
+        bool is_on = found->shadowing && found->blocking;
+        row_set(row, is_on, is_on ? found->shadowing->span : SPAN_NONE, "%s",
+                is_on               ? "a light that casts shadows"
+                : !found->shadowing ? "no light casts shadows"
+                                    : "no object casts a shadow");
+    }
+    bool has_shadows = row->is_on;
+
+    row = &rows[FEATURE_TRANSPARENT_SHADOWS];
+    if (!has_shadows)
+        row_set(row, false, SPAN_NONE, "no shadow rays");
+    else
+        row_set(row, found->filtering, found->filtering ? found->filtering->span : SPAN_NONE, "%s",
+                found->filtering ? "an object that casts a shadow may transmit light"
+                                 : "every object that casts a shadow is opaque");
+
+    row = &rows[FEATURE_AREA_LIGHTS];
+    if (row_below(row, quality, QUALITY_AREA_LIGHTS))
+        return;
+    if (found->area && !has_shadows && !found->lit_area)
+        row_set(row, false, found->area->span, "area_light, but no object casts a shadow");
+    else
+        row_set(row, found->area, found->area ? found->area->span : SPAN_NONE, "%s",
+                found->area ? "area_light" : "no area_light that casts shadows");
+}
+
+static void plan_surfaces(const PlanOptions *options, const Evidence *found, PlanRow *rows)
+{
+    const Surface *s = found->reflecting;
+    if (!row_below(&rows[FEATURE_REFLECTION], options->quality, QUALITY_REFLECTION))
+        row_set(&rows[FEATURE_REFLECTION], s, s ? s->span : SPAN_NONE, "%s",
+                s ? "a finish with reflection" : "no finish reflects");
+
+    s = found->transmitting;
+    if (!row_below(&rows[FEATURE_REFRACTION], options->quality, QUALITY_REFRACTION))
+        row_set(&rows[FEATURE_REFRACTION], s, s ? s->span : SPAN_NONE, "%s",
+                s ? "a pigment with filter or transmit" : "no pigment has filter or transmit");
+
+    s = found->absorbing;
+    row_set(&rows[FEATURE_ABSORPTION], s, s ? s->span : SPAN_NONE, "%s",
+            s ? "an interior with fade_distance" : "no transparent object has fade_distance");
+
+    s = found->highlighted;
+    if (!row_below(&rows[FEATURE_HIGHLIGHTS], options->quality, QUALITY_LIGHTS)) {
+        bool is_on = s && found->shadowing;
+        row_set(&rows[FEATURE_HIGHLIGHTS], is_on, is_on ? s->span : SPAN_NONE, "%s",
+                is_on ? "a finish with phong or specular"
+                : s   ? "phong or specular, but no light that makes highlights"
+                      : "no finish has phong or specular");
+    }
+}
+
+static void plan_camera_and_sky(const Scene *scene, PlanRow *rows)
+{
+    const Camera *camera = &scene->camera;
+    bool is_blurred = camera->aperture != 0 && camera->blur_samples > 0;
+    row_set(&rows[FEATURE_FOCAL_BLUR], is_blurred, camera->span, "%s",
+            is_blurred              ? "camera with aperture and blur_samples"
+            : camera->aperture != 0 ? "camera with aperture, but no blur_samples"
+                                    : "camera without aperture");
+    bool has_sky = scene->sky.pigment_count > 0;
+    row_set(&rows[FEATURE_SKY], has_sky, scene->sky.span, "%s",
+            has_sky ? "sky_sphere" : "no sky_sphere");
+}
+
+static long global_photons(const Scene *scene)
+{
+    long asked = scene->settings.pms.global_count;
+    return asked > 0 ? asked : GLOBAL_PHOTONS_DEFAULT;
+}
+
+Status plan_make(const Scene *scene, const PlanOptions *options, Arena *arena, Plan *out)
+{
+    *out = (Plan){0};
+    out->light_makes_caustics = ARENA_ARRAY(arena, bool, (size_t)scene->light_count + 1);
+    if (!out->light_makes_caustics)
+        return ERR_MEMORY;
+    Evidence found = {0};
+    for (uint32_t i = 0; i < scene->surface_count; i++)
+        look_at_surface(&scene->surfaces[i], &found);
+    for (int i = 0; i < scene->light_count; i++)
+        look_at_light(scene, &scene->lights[i], &out->light_makes_caustics[i], &found);
+
+    plan_caustics(scene, options, &found, &out->rows[FEATURE_CAUSTIC_MAP]);
+    plan_indirect(scene, options, &found, &out->rows[FEATURE_GLOBAL_MAP]);
+    plan_lights(options, &found, out);
+    plan_surfaces(options, &found, out->rows);
+    plan_camera_and_sky(scene, out->rows);
+
+    out->is_unlit = options->quality < QUALITY_LIGHTS;
+    out->has_ambient = !plan_has(out, FEATURE_GLOBAL_MAP);
+    if (plan_has(out, FEATURE_CAUSTIC_MAP))
+        out->caustic_photons = scene->settings.photons.count;
+    else
+        for (int i = 0; i < scene->light_count; i++)
+            out->light_makes_caustics[i] = false;
+    if (plan_has(out, FEATURE_GLOBAL_MAP))
+        out->global_photons = global_photons(scene);
+    return OK;
+}

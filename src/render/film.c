@@ -1,0 +1,169 @@
+/* The film.  SPDX-License-Identifier: Apache-2.0 */
+#include "render/film.h"
+
+#include <string.h>
+
+typedef struct LayerKind {
+    unsigned bit;
+    const char *name, *channels;
+} LayerKind;
+
+/* In the order of a vector's channels, which film_vector repeats. */
+static const LayerKind LAYER_KINDS[] = {
+    {0, "", "RGBA"},
+    {LAYER_DIRECT, "direct", "RGB"},
+    {LAYER_CAUSTIC, "caustic", "RGB"},
+    {LAYER_INDIRECT, "indirect", "RGB"},
+    {LAYER_Z, "Z", "Z"},
+    {LAYER_N, "N", "XYZ"},
+    {LAYER_ALBEDO, "albedo", "RGB"},
+};
+enum { LAYER_KIND_COUNT = sizeof LAYER_KINDS / sizeof LAYER_KINDS[0] };
+
+Status film_init(Film *film, const RenderOptions *options, Diag *diag)
+{
+    *film = (Film){.width = options->width,
+                   .height = options->height,
+                   .z_channel = -1,
+                   .layers = options->layers,
+                   .has_alpha = options->has_alpha};
+    image_init(&film->image, film->width, film->height);
+    for (int i = 0; i < LAYER_KIND_COUNT; i++) {
+        const LayerKind *kind = &LAYER_KINDS[i];
+        if (kind->bit && !(options->layers & kind->bit))
+            continue;
+        if (!image_add_layer(&film->image, kind->name, kind->channels)) {
+            image_done(&film->image);
+            return diag_no_memory(diag, "the image");
+        }
+        if (kind->bit == LAYER_Z)
+            film->z_channel = film->channels;
+        film->channels += (int)strlen(kind->channels);
+    }
+    return OK;
+}
+
+void film_done(Film *film)
+{
+    image_done(&film->image);
+}
+
+static float *put_rgb(float *out, Rgb c)
+{
+    out[0] = c.r;
+    out[1] = c.g;
+    out[2] = c.b;
+    return out + 3;
+}
+
+void film_vector(const Film *film, const EyeSample *s, float *out)
+{
+    Rgb beauty =
+        rgb_add(rgb_add(s->part[PART_DIRECT], s->part[PART_CAUSTIC]), s->part[PART_INDIRECT]);
+    float *at = put_rgb(out, beauty);
+    *at++ = film->has_alpha ? s->alpha : 1;
+    for (int i = 0; i < PART_COUNT; i++)
+        if (film->layers & (unsigned)LAYER_DIRECT << i)
+            at = put_rgb(at, s->part[i]);
+    if (film->layers & LAYER_Z)
+        *at++ = (float)s->depth;
+    if (film->layers & LAYER_N)
+        at = put_rgb(at, rgb((float)s->normal.x, (float)s->normal.y, (float)s->normal.z));
+    if (film->layers & LAYER_ALBEDO)
+        put_rgb(at, s->albedo);
+}
+
+static size_t row_offset(const Film *film, int x, int y)
+{
+    return (size_t)y * (size_t)film->width + (size_t)x;
+}
+
+void film_store(Film *film, FilmRect rect, const float *vectors)
+{
+    for (int y = rect.y1; y < rect.y2; y++)
+        for (int x = rect.x1; x < rect.x2; x++)
+            for (int i = 0; i < film->image.layer_count; i++) {
+                ImageLayer *layer = &film->image.layers[i];
+                size_t count = (size_t)layer->channel_count;
+                memcpy(layer->pixels + row_offset(film, x, y) * count, vectors,
+                       count * sizeof *vectors);
+                vectors += count;
+            }
+}
+
+void film_fetch(const Film *film, FilmRect rect, float *vectors)
+{
+    for (int y = rect.y1; y < rect.y2; y++)
+        for (int x = rect.x1; x < rect.x2; x++)
+            for (int i = 0; i < film->image.layer_count; i++) {
+                const ImageLayer *layer = &film->image.layers[i];
+                size_t count = (size_t)layer->channel_count;
+                memcpy(vectors, layer->pixels + row_offset(film, x, y) * count,
+                       count * sizeof *vectors);
+                vectors += count;
+            }
+}
+
+static int blocks_along(int length, int side)
+{
+    return (length + side - 1) / side;
+}
+
+size_t film_block_count(const Film *film, int side)
+{
+    return (size_t)blocks_along(film->width, side) * (size_t)blocks_along(film->height, side);
+}
+
+FilmRect film_block(const Film *film, int side, size_t index)
+{
+    size_t across = (size_t)blocks_along(film->width, side);
+    int x1 = (int)(index % across) * side, y1 = (int)(index / across) * side;
+    int x2 = x1 + side, y2 = y1 + side;
+    return (FilmRect){x1, y1, x2 < film->width ? x2 : film->width,
+                      y2 < film->height ? y2 : film->height};
+}
+
+/* --- working values to linear light --------------------------------------------------------- */
+
+static float srgb_decode(float v)
+{
+    return v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
+}
+
+/* Scenes of before 3.7 without assumed_gamma work on display values. */
+static float linear_value(const SceneSettings *settings, float v)
+{
+    if (settings->is_gamma_off)
+        return srgb_decode(v);
+    return v > 0 ? powf(v, (float)settings->assumed_gamma) : 0;
+}
+
+static void scale_light_layers(Film *film, size_t pixel, const float factor[3])
+{
+    for (int i = 1; i < film->image.layer_count; i++) {
+        ImageLayer *layer = &film->image.layers[i];
+        if (strcmp(layer->name, "direct") != 0 && strcmp(layer->name, "caustic") != 0 &&
+            strcmp(layer->name, "indirect") != 0)
+            continue;
+        for (size_t c = 0; c < 3; c++)
+            layer->pixels[pixel * 3 + c] *= factor[c];
+    }
+}
+
+void film_linearize(Film *film, const SceneSettings *settings)
+{
+    if (!settings->is_gamma_off && settings->assumed_gamma == 1)
+        return;
+    float *beauty = film->image.layers[0].pixels;
+    size_t pixels = (size_t)film->width * (size_t)film->height;
+    for (size_t i = 0; i < pixels; i++) {
+        float factor[3];
+        for (size_t c = 0; c < 3; c++) {
+            float *v = &beauty[i * 4 + c];
+            float linear = linear_value(settings, *v);
+            factor[c] = *v != 0 ? linear / *v : 0;
+            *v = linear;
+        }
+        scale_light_layers(film, i, factor);
+    }
+}
