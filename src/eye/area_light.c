@@ -21,6 +21,7 @@ typedef struct ShadowGrid {
     V3 to_center; /* from the surface to the light's centre */
     Rgb color;    /* of the light as it would arrive */
     AreaFrame frame;
+    int light_index;
     bool blocks_targets;
 } ShadowGrid;
 
@@ -69,11 +70,8 @@ static Rgb grid_at(ShadowGrid *grid, int i, int j)
     if (eye->grid_marks[cell] != eye->grid_mark) {
         V3 offset = area_offset(grid->light, &grid->frame, i, j, &eye->rng);
         V3 to = v3_add(grid->to_center, offset);
-        double distance = v3_len(to);
-        eye->grid[cell] = distance > 0
-                              ? trace_shadow(&eye->trace, &grid->s->at, v3_scale(to, 1 / distance),
-                                             distance, grid->blocks_targets)
-                              : RGB_WHITE;
+        eye->grid[cell] = trace_shadow(&eye->trace, &grid->s->at, v3_unit(to), v3_len(to),
+                                       grid->light_index, grid->blocks_targets);
         eye->grid_marks[cell] = eye->grid_mark;
     }
     return eye->grid[cell];
@@ -112,12 +110,15 @@ Rgb area_shadow(EyeThread *eye, const EyeLight *light, const SurfaceSample *s,
                 const LightSample *center)
 {
     const AreaLight *area = &light->light->area;
+    if (!(center->distance > 0))
+        return RGB_WHITE; /* behind a parallel light */
     ShadowGrid grid = {.eye = eye,
                        .light = light->light,
                        .s = s,
                        .to_center = v3_scale(center->to_light, center->distance),
                        .color = center->color,
                        .frame = area_frame(light->light, center->to_light),
+                       .light_index = light->index,
                        .blocks_targets =
                            light->makes_caustics && s->surface->photons.is_collecting};
     eye->grid_mark++;

@@ -43,7 +43,8 @@ static Rgb light_shadow(EyeThread *eye, const EyeLight *light, const SurfaceSamp
     if (light->is_area)
         return area_shadow(eye, light, s, sample);
     bool blocks_targets = light->makes_caustics && s->surface->photons.is_collecting;
-    return trace_shadow(&eye->trace, &s->at, sample->to_light, sample->distance, blocks_targets);
+    return trace_shadow(&eye->trace, &s->at, sample->to_light, sample->distance, light->index,
+                        blocks_targets);
 }
 
 static Rgb light_from(EyeThread *eye, const EyeLight *light, const SurfaceSample *s)

@@ -8,6 +8,7 @@
 /* A light as the pass uses it. */
 typedef struct EyeLight {
     const Light *light;
+    int index; /* among the scene's lights */
     bool has_shadow, is_area, has_highlights;
     bool makes_caustics; /* what targets refract of it comes with the caustic map */
 } EyeLight;

@@ -10,16 +10,19 @@ enum { EYE_RNG = 0x657965 };
 
 /* --- a thread's state --------------------------------------------------------------------- */
 
-static EyeLight eye_light(const Plan *plan, const EyeOptions *options, const Light *light,
-                          bool makes_caustics)
+static EyeLight eye_light(const EyeThread *eye, int index)
 {
+    const Plan *plan = eye->plan;
+    const Light *light = &eye->scene->lights[index];
     bool has_area = light->area.size1 > 0 && light->area.size2 > 0;
-    return (EyeLight){.light = light,
-                      .has_shadow = !light->is_shadowless && plan_has(plan, FEATURE_SHADOWS),
-                      .is_area =
-                          has_area && !light->is_shadowless && plan_has(plan, FEATURE_AREA_LIGHTS),
-                      .has_highlights = !light->is_shadowless && plan_has(plan, FEATURE_HIGHLIGHTS),
-                      .makes_caustics = makes_caustics && options->caustic};
+    return (EyeLight){
+        .light = light,
+        .index = index,
+        .has_shadow = !light->is_shadowless && plan_has(plan, FEATURE_SHADOWS),
+        .is_area = has_area && !light->is_shadowless && plan_has(plan, FEATURE_AREA_LIGHTS),
+        .has_highlights = !light->is_shadowless && plan_has(plan, FEATURE_HIGHLIGHTS),
+        .makes_caustics = plan->light_makes_caustics[index] && eye->options.caustic,
+    };
 }
 
 static Status make_lights(EyeThread *eye, Diag *diag)
@@ -33,8 +36,7 @@ static Status make_lights(EyeThread *eye, Diag *diag)
         const Light *light = &scene->lights[i];
         if (rgb_is_black(light->color))
             continue;
-        EyeLight made =
-            eye_light(eye->plan, &eye->options, light, eye->plan->light_makes_caustics[i]);
+        EyeLight made = eye_light(eye, i);
         eye->lights[eye->light_count++] = made;
         size_t its_cells = made.is_area ? (size_t)light->area.size1 * (size_t)light->area.size2 : 0;
         if (its_cells > cells)

@@ -92,7 +92,6 @@ static void reflect_layer(EyeThread *eye, const Path *path, const SurfaceSample 
     float weight = path->weight * reflection_weight(layer);
     if (!may_trace(eye, path->level, weight))
         return;
-    eye->trace.stats.count[STAT_REFLECTED_RAYS]++;
     Path mirrored;
     mirrored.ray = trace_ray_from(&s->at, layer->reflect_dir);
     mirrored.kind = RAY_REFLECTED;
@@ -139,15 +138,14 @@ static bool go_on(EyeThread *eye, Path *path, const SurfaceSample *s)
         path->is_mirrored = true;
         path->kind = RAY_REFLECTED;
     } else {
-        path->transmit *= rgb_grey(s->through);
-        path->through = rgb_mul(path->through, s->through);
-        path->weight *= rgb_max_abs(s->through);
-        path->kind = RAY_REFRACTED;
+        path->transmit *= rgb_grey(s->filter);
+        path->weight *= rgb_max_abs(s->filter);
+        path->kind = path->is_mirrored ? RAY_REFLECTED : RAY_REFRACTED;
         path->inside = s->inside_after;
     }
+    path->through = rgb_mul(path->through, s->through);
     if (!may_trace(eye, path->level, path->weight))
         return false;
-    eye->trace.stats.count[s->is_total_reflection ? STAT_REFLECTED_RAYS : STAT_REFRACTED_RAYS]++;
     path->is_straight = s->is_straight && !s->is_total_reflection;
     path->ray = trace_ray_from(&s->at, s->transmit_dir);
     return true;
@@ -198,10 +196,8 @@ static void radiance(EyeThread *eye, Path *path, Radiance *out, EyeSample *first
         surface_sample(&eye->trace, &path->ray, &hit, &path->inside, &s);
         if (first && surfaces == 0)
             describe_first(&hit, &s, first);
-        path->through = rgb_mul(path->through, s.segment);
         add_surface(eye, path, &s, out);
-        bool is_followed = s.is_total_reflection ||
-                           (s.has_transmission && plan_has(eye->plan, FEATURE_REFRACTION));
+        bool is_followed = s.has_transmission && plan_has(eye->plan, FEATURE_REFRACTION);
         if (!is_followed || !go_on(eye, path, &s))
             return;
     }
@@ -217,6 +213,5 @@ void camera_radiance(EyeThread *eye, const Ray *ray, const Interiors *interiors,
                  .inside = *interiors,
                  .through = RGB_WHITE,
                  .transmit = 1};
-    eye->trace.stats.count[STAT_CAMERA_RAYS]++;
     radiance(eye, &path, out, first);
 }

@@ -1,0 +1,256 @@
+/* The plan: each row for the scene that calls for it and the one that does not.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "plan/plan.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* A scene of one surface and one light, to be changed by each test. */
+typedef struct Small {
+    Finish finish;
+    Pigment pigment;
+    Layer layer;
+    Texture texture;
+    Interior interior;
+    Surface surface;
+    Light light;
+    Scene scene;
+    Source source;
+    Arena *arena;
+    Plan plan;
+} Small;
+
+static Span span_at(Small *s, uint32_t begin)
+{
+    return (Span){&s->source, begin, begin + 1};
+}
+
+static int set_up(void **state)
+{
+    static Small s;
+    memset(&s, 0, sizeof s);
+    s.arena = arena_new();
+    s.source = (Source){"a.pms", "0123456789", 10};
+    s.finish = FINISH_DEFAULT;
+    s.pigment = (Pigment){.is_solid = true, .color = {1, 1, 1, 0, 0}};
+    s.layer = (Layer){&s.pigment, &s.finish};
+    s.texture = (Texture){.layers = &s.layer, .layer_count = 1};
+    s.interior = INTERIOR_DEFAULT;
+    s.surface = (Surface){.texture = &s.texture,
+                          .interior = &s.interior,
+                          .photons = PHOTON_FLAGS_DEFAULT,
+                          .span = span_at(&s, 1)};
+    s.light = (Light){.color = {1, 1, 1}, .photon_share = 1, .span = span_at(&s, 2)};
+    s.scene = (Scene){.surfaces = &s.surface,
+                      .surface_count = 1,
+                      .lights = &s.light,
+                      .light_count = 1,
+                      .settings.photons.gather_max = 100};
+    *state = &s;
+    return s.arena ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+    arena_free(((Small *)*state)->arena);
+    return 0;
+}
+
+static bool has(Small *s, PlanOptions options, FeatureId feature)
+{
+    assert_int_equal(plan_make(&s->scene, &options, s->arena, &s->plan), OK);
+    return plan_has(&s->plan, feature);
+}
+
+static void make_glass(Small *s)
+{
+    s->surface.may_transmit = true;
+    s->surface.is_target = true;
+    s->surface.photons.is_target = true;
+    s->surface.photons.refraction = TRI_ON;
+}
+
+static void every_row_has_a_reason(void **state)
+{
+    Small *s = *state;
+    for (int quality = 0; quality <= 9; quality++) {
+        has(s, (PlanOptions){.quality = quality}, FEATURE_SKY);
+        for (int i = 0; i < FEATURE_COUNT; i++) {
+            assert_true(s->plan.rows[i].reason[0] != '\0');
+            assert_true(feature_name((FeatureId)i)[0] && feature_text((FeatureId)i)[0]);
+        }
+    }
+}
+
+static void a_plain_scene_needs_light_and_shadows_only(void **state)
+{
+    Small *s = *state;
+    has(s, PLAN_OPTIONS_DEFAULT, FEATURE_SKY);
+    for (int i = 0; i < FEATURE_COUNT; i++)
+        assert_int_equal(plan_has(&s->plan, (FeatureId)i),
+                         i == FEATURE_LIGHTS || i == FEATURE_SHADOWS);
+    assert_true(s->plan.has_ambient && !s->plan.is_unlit);
+}
+
+static void an_empty_scene_needs_nothing(void **state)
+{
+    Small *s = *state;
+    s->scene.surface_count = 0;
+    s->scene.light_count = 0;
+    s->scene.settings.photons.is_on = true;
+    has(s, (PlanOptions){.quality = 9, .has_indirect = true}, FEATURE_SKY);
+    for (int i = 0; i < FEATURE_COUNT; i++)
+        assert_false(plan_has(&s->plan, (FeatureId)i));
+}
+
+static void caustics_want_photons_a_light_and_a_target(void **state)
+{
+    Small *s = *state;
+    make_glass(s);
+    assert_false(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_CAUSTIC_MAP));
+    assert_non_null(strstr(s->plan.rows[FEATURE_CAUSTIC_MAP].reason, "filtered shadows"));
+    s->scene.settings.photons.is_on = true;
+    s->scene.settings.photons.count = 12345;
+    s->scene.settings.photons.span = span_at(s, 3);
+    assert_true(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_CAUSTIC_MAP));
+    assert_true(s->plan.light_makes_caustics[0]);
+    assert_int_equal(s->plan.caustic_photons, 12345);
+    assert_int_equal(s->plan.rows[FEATURE_CAUSTIC_MAP].why.begin, 3);
+
+    assert_false(has(s, (PlanOptions){.quality = 9, .has_no_photons = true}, FEATURE_CAUSTIC_MAP));
+    assert_false(s->plan.light_makes_caustics[0]);
+    assert_int_equal(s->plan.caustic_photons, 0);
+    s->light.is_shadowless = true;
+    assert_false(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_CAUSTIC_MAP));
+    s->light.is_shadowless = false;
+    s->light.color = RGB_BLACK;
+    assert_false(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_CAUSTIC_MAP));
+}
+
+static void on_at_object_or_light_counts_and_off_at_either_wins(void **state)
+{
+    Small *s = *state;
+    make_glass(s);
+    s->scene.settings.photons.is_on = true;
+    s->surface.photons.refraction = TRI_UNSET;
+    assert_false(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_CAUSTIC_MAP));
+    s->light.photon_refraction = TRI_ON;
+    assert_true(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_CAUSTIC_MAP));
+    s->surface.photons.refraction = TRI_OFF;
+    assert_false(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_CAUSTIC_MAP));
+    s->surface.photons.refraction = TRI_ON;
+    s->light.photon_refraction = TRI_OFF;
+    assert_false(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_CAUSTIC_MAP));
+    /* A target that nobody marked asks for all it can do. */
+    s->light.photon_refraction = TRI_UNSET;
+    s->surface.photons.refraction = TRI_UNSET;
+    s->surface.photons.is_target = false;
+    assert_true(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_CAUSTIC_MAP));
+}
+
+static void no_specular_surface_no_photon_pass(void **state)
+{
+    Small *s = *state;
+    s->scene.settings.photons.is_on = true;
+    s->surface.is_target = s->surface.photons.is_target = true;
+    s->surface.photons.refraction = s->surface.photons.reflection = TRI_ON;
+    assert_false(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_CAUSTIC_MAP));
+    assert_non_null(strstr(s->plan.rows[FEATURE_CAUSTIC_MAP].reason, "no surface"));
+}
+
+static void indirect_light_replaces_ambient(void **state)
+{
+    Small *s = *state;
+    PlanOptions options = {.quality = 9, .has_indirect = true};
+    assert_true(has(s, options, FEATURE_GLOBAL_MAP));
+    assert_false(s->plan.has_ambient);
+    assert_true(s->plan.global_photons > 0);
+    s->scene.settings.pms = (PmsSettings){.has_indirect = true, .global_count = 777};
+    assert_true(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_GLOBAL_MAP));
+    assert_int_equal(s->plan.global_photons, 777);
+    options.quality = 8;
+    assert_false(has(s, options, FEATURE_GLOBAL_MAP));
+    assert_true(s->plan.has_ambient);
+}
+
+static void transparent_shadows_want_a_transparent_blocker(void **state)
+{
+    Small *s = *state;
+    s->surface.may_transmit = true;
+    assert_true(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_TRANSPARENT_SHADOWS));
+    assert_true(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_REFRACTION));
+    assert_int_equal(s->plan.rows[FEATURE_TRANSPARENT_SHADOWS].why.begin, 1);
+    s->surface.no_shadow = true;
+    assert_false(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_TRANSPARENT_SHADOWS));
+    assert_false(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_SHADOWS));
+}
+
+static void quality_switches_effects_off(void **state)
+{
+    Small *s = *state;
+    s->surface.may_transmit = s->surface.may_reflect = true;
+    s->light.area = (AreaLight){.size1 = 3, .size2 = 3};
+    s->finish.phong = 1;
+    const struct {
+        FeatureId feature;
+        int from;
+    } wanted[] = {{FEATURE_LIGHTS, 2},      {FEATURE_HIGHLIGHTS, 2},
+                  {FEATURE_SHADOWS, 4},     {FEATURE_TRANSPARENT_SHADOWS, 4},
+                  {FEATURE_AREA_LIGHTS, 5}, {FEATURE_REFRACTION, 6},
+                  {FEATURE_REFLECTION, 8}};
+    for (int quality = 0; quality <= 9; quality++)
+        for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++)
+            assert_int_equal(has(s, (PlanOptions){.quality = quality}, wanted[i].feature),
+                             quality >= wanted[i].from);
+    has(s, (PlanOptions){.quality = 1}, FEATURE_LIGHTS);
+    assert_true(s->plan.is_unlit);
+}
+
+static void highlights_want_a_light_that_makes_them(void **state)
+{
+    Small *s = *state;
+    s->finish.specular = 0.5f;
+    assert_true(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_HIGHLIGHTS));
+    s->light.is_shadowless = true;
+    assert_false(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_HIGHLIGHTS));
+}
+
+static void camera_sky_and_interior_have_their_rows(void **state)
+{
+    Small *s = *state;
+    s->scene.camera = (Camera){.aperture = 1, .blur_samples = 0};
+    assert_false(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_FOCAL_BLUR));
+    s->scene.camera.blur_samples = 10;
+    assert_true(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_FOCAL_BLUR));
+    s->scene.sky.pigment_count = 1;
+    assert_true(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_SKY));
+    s->interior.fade_distance = 1;
+    assert_false(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_ABSORPTION));
+    s->surface.may_transmit = true;
+    assert_true(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_ABSORPTION));
+}
+
+#define PLAN_TEST(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        PLAN_TEST(every_row_has_a_reason),
+        PLAN_TEST(a_plain_scene_needs_light_and_shadows_only),
+        PLAN_TEST(an_empty_scene_needs_nothing),
+        PLAN_TEST(caustics_want_photons_a_light_and_a_target),
+        PLAN_TEST(on_at_object_or_light_counts_and_off_at_either_wins),
+        PLAN_TEST(no_specular_surface_no_photon_pass),
+        PLAN_TEST(indirect_light_replaces_ambient),
+        PLAN_TEST(transparent_shadows_want_a_transparent_blocker),
+        PLAN_TEST(quality_switches_effects_off),
+        PLAN_TEST(highlights_want_a_light_that_makes_them),
+        PLAN_TEST(camera_sky_and_interior_have_their_rows),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
