@@ -10,7 +10,7 @@ typedef struct EyeLight {
     const Light *light;
     int index; /* among the scene's lights */
     bool has_shadow, is_area, has_highlights;
-    bool makes_caustics; /* what targets refract of it comes with the caustic map */
+    bool makes_caustics; /* the caustic map brings what targets refract of it */
 } EyeLight;
 
 /* Radiance along a ray, by where the light comes from. */

@@ -21,7 +21,8 @@ static EyeLight eye_light(const EyeThread *eye, int index)
         .has_shadow = !light->is_shadowless && plan_has(plan, FEATURE_SHADOWS),
         .is_area = has_area && !light->is_shadowless && plan_has(plan, FEATURE_AREA_LIGHTS),
         .has_highlights = !light->is_shadowless && plan_has(plan, FEATURE_HIGHLIGHTS),
-        .makes_caustics = plan->light_makes_caustics[index] && eye->options.caustic,
+        .makes_caustics = plan->light_makes_caustics[index] && eye->options.caustic &&
+                          light->photon_refraction != TRI_OFF,
     };
 }
 

@@ -111,23 +111,12 @@ static void reflect_layer(EyeThread *eye, const Path *path, const SurfaceSample 
         add_part(out, (LightPart)i, share, seen.part[i]);
 }
 
-static bool same_normal(V3 a, V3 b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
-/* Mirrors show the whole of what they see: the layers above do not filter it.  Where total
- * reflection takes all the light, layers that would mirror the same ray are passed over. */
+/* Mirrors show the whole of what they see: the layers above do not filter it. */
 static void add_reflections(EyeThread *eye, const Path *path, const SurfaceSample *s, Radiance *out)
 {
-    for (int i = 0; i < s->layer_count; i++) {
-        const SurfaceLayer *layer = &s->layers[i];
-        if (rgb_is_black(layer->reflect))
-            continue;
-        if (s->is_total_reflection && same_normal(layer->n, s->layers[0].n))
-            continue;
-        reflect_layer(eye, path, s, layer, out);
-    }
+    for (int i = 0; i < s->layer_count; i++)
+        if (!rgb_is_black(s->layers[i].reflect))
+            reflect_layer(eye, path, s, &s->layers[i], out);
 }
 
 /* Turn the path into the ray that goes on through the surface; false: none does. */

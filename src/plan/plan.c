@@ -84,24 +84,23 @@ static bool surface_has_highlights(const Surface *surface)
     return false;
 }
 
-static bool photons_do(Tri of_light, Tri of_object, bool is_unmarked)
+static bool photons_do(Tri of_light, Tri of_object)
 {
     if (of_light == TRI_OFF || of_object == TRI_OFF)
         return false;
-    return of_light == TRI_ON || of_object == TRI_ON || is_unmarked;
+    return of_light == TRI_ON || of_object == TRI_ON;
 }
 
 bool plan_photons_reflect(const Light *light, const Surface *surface)
 {
-    return surface->may_reflect && photons_do(light->photon_reflection, surface->photons.reflection,
-                                              !surface->photons.is_target);
+    return surface->may_reflect &&
+           photons_do(light->photon_reflection, surface->photons.reflection);
 }
 
 bool plan_photons_refract(const Light *light, const Surface *surface)
 {
     return surface->may_transmit &&
-           photons_do(light->photon_refraction, surface->photons.refraction,
-                      !surface->photons.is_target);
+           photons_do(light->photon_refraction, surface->photons.refraction);
 }
 
 static bool light_makes_caustics(const Scene *scene, const Light *light)

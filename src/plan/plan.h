@@ -47,7 +47,7 @@ static inline bool plan_has(const Plan *plan, FeatureId feature)
 }
 
 /* Return true if photons from `light` are to be reflected (refracted) by a surface: the object or
- * the light asks for it and neither forbids it.  A target nobody marked counts as asking. */
+ * the light asks for it and neither forbids it. */
 bool plan_photons_reflect(const Light *light, const Surface *surface);
 bool plan_photons_refract(const Light *light, const Surface *surface);
 

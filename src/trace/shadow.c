@@ -19,6 +19,7 @@ typedef struct Filter {
 typedef struct ShadowQuery {
     TraceThread *thread;
     const Tracer *tracer;
+    const Light *light; /* NULL: none in particular */
     bool blocks_targets;
     uint32_t blocker;
     int count, capacity;
@@ -105,14 +106,22 @@ static Rgb texture_filter(const Texture *texture, const Interior *interior, V3 p
     return filter;
 }
 
+/* Return true if a target's refracted light comes with the caustic map. */
+static bool is_blocking_target(const ShadowQuery *query, const Surface *surface)
+{
+    if (!query->blocks_targets || !surface->is_target)
+        return false;
+    return query->light ? plan_photons_refract(query->light, surface)
+                        : surface->photons.refraction == TRI_ON;
+}
+
 /* Return what passes one crossing; `since` is t of the crossing before it. */
 static Rgb crossing_filter(const ShadowQuery *query, Filter *filter, const Ray *ray, double since)
 {
     const Crossing *crossing = &filter->next;
     const Surface *surface = &query->tracer->scene->surfaces[crossing->leaf->surface];
     const Interior *interior = surface->interior;
-    if (!surface->may_transmit ||
-        (query->blocks_targets && surface->is_target && surface->photons.refraction == TRI_ON))
+    if (!surface->may_transmit || is_blocking_target(query, surface))
         return RGB_BLACK;
     /* The point is needed only if something depends on it. */
     bool is_closed = query->tracer->objects[filter->object].is_closed;
@@ -189,6 +198,7 @@ Rgb trace_shadow(TraceThread *thread, const ShapePoint *from, V3 to, double dist
     ShadowQuery query;
     query.thread = thread;
     query.tracer = thread->tracer;
+    query.light = light >= 0 ? &thread->tracer->scene->lights[light] : NULL;
     query.blocks_targets = blocks_targets;
     query.count = 0;
     query.capacity = FILTERS_FEW;

@@ -146,11 +146,6 @@ static void on_at_object_or_light_counts_and_off_at_either_wins(void **state)
     s->surface.photons.refraction = TRI_ON;
     s->light.photon_refraction = TRI_OFF;
     assert_false(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_CAUSTIC_MAP));
-    /* A target that nobody marked asks for all it can do. */
-    s->light.photon_refraction = TRI_UNSET;
-    s->surface.photons.refraction = TRI_UNSET;
-    s->surface.photons.is_target = false;
-    assert_true(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_CAUSTIC_MAP));
 }
 
 static void no_specular_surface_no_photon_pass(void **state)
