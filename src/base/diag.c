@@ -203,6 +203,13 @@ void diag_note(Diag *diag, Span span, const char *format, ...)
     va_end(args);
 }
 
+void diag_say(Diag *diag, const char *text)
+{
+    pthread_mutex_lock(&diag->lock);
+    diag->sink(diag->ctx, text);
+    pthread_mutex_unlock(&diag->lock);
+}
+
 Status diag_fail(Diag *diag, Status status, const char *format, ...)
 {
     va_list args;

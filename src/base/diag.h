@@ -47,6 +47,9 @@ void diag_warn_v(Diag *diag, WarnKind kind, Span span, const char *format, va_li
 void diag_note(Diag *diag, Span span, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Send `text` as it is: what a scene says with #debug. */
+void diag_say(Diag *diag, const char *text);
+
 /* Report a failure that has no place in a scene ("cannot write ...") and return `status`,
  * so that a caller can write  return diag_fail(diag, ERR_FILE, "...", ...); */
 Status diag_fail(Diag *diag, Status status, const char *format, ...)

@@ -22,7 +22,13 @@ typedef enum TokenKind {
     TOKEN_KIND_COUNT
 } TokenKind;
 
-enum { KEYWORD_FIRST = TOKEN_HASH + 1, IDENTIFIER_MAX = 255 };
+enum { IDENTIFIER_MAX = 255 };
+
+/* Return true for a reserved word. */
+static inline bool token_is_keyword(TokenKind kind)
+{
+    return kind > TOKEN_HASH;
+}
 
 /* A word as spelled, one for each different spelling in a scene: equal names are equal
  * pointers.  The symbol table hangs on it, so finding a variable costs no search. */

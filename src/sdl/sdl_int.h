@@ -127,7 +127,7 @@ void *parse_no_null(Parser *p, const void *node);
 void read_statement(Parser *p);
 /* If the next token begins a block that can be a value (an object, texture, pigment, finish,
  * interior, material, transform, camera, color_map, sky_sphere), read it into *out and return
- * true. */
+ * true.  Past the closing brace it may look only with parse_is_next. */
 bool read_value(Parser *p, Value *out);
 /* #default { ... }, after its opening brace and up to and including the closing one. */
 void read_default(Parser *p);

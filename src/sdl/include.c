@@ -1,0 +1,214 @@
+/* #include, and the search for files.
+ *
+ * A file is cut into tokens once, however often it is included.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "sdl/parser_int.h"
+
+#include "base/file.h"
+
+#include <dirent.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+/* --- where a file may be
+ * --------------------------------------------------------------------------- */
+
+/* Join a folder ("" for none) and a name; returns false when the path is too long. */
+static bool join(char out[PATH_MAX_BYTES], const char *folder, const char *name)
+{
+    size_t length = strlen(folder);
+    const char *slash = length && folder[length - 1] != '/' ? "/" : "";
+    int wrote = snprintf(out, PATH_MAX_BYTES, "%s%s%s", folder, slash, name);
+    return wrote >= 0 && wrote < PATH_MAX_BYTES;
+}
+
+/* Return the folder of a path with its slash, in `out`. */
+static const char *folder_of(char out[PATH_MAX_BYTES], const char *path)
+{
+    size_t length = (size_t)(path_base(path) - path);
+    if (length >= PATH_MAX_BYTES)
+        length = 0;
+    memcpy(out, path, length);
+    out[length] = 0;
+    return out;
+}
+
+/* Put the folder beside the program into `out`: `relative` to where the program lies. */
+static const char *program_folder(char out[PATH_MAX_BYTES], const char *relative)
+{
+    char program[PATH_MAX_BYTES], folder[PATH_MAX_BYTES];
+    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    if (length <= 0)
+        return NULL;
+    program[length] = 0;
+    return join(out, folder_of(folder, program), relative) ? out : NULL;
+}
+
+/* Return the i-th folder of the search order, "" for the current one; NULL: skip it.  *is_last
+ * is set past the end. */
+static const char *search_folder(Parser *p, int i, char out[PATH_MAX_BYTES], bool *is_last)
+{
+    int libraries = p->options->library_path_count;
+    *is_last = false;
+    if (i == 0)
+        return "";
+    if (i == 1)
+        return folder_of(out, p->frame_count ? frame_top(p)->file->source->path : "");
+    if (i < 2 + libraries)
+        return p->options->library_paths[i - 2];
+    switch (i - 2 - libraries) {
+    case 0:
+        return program_folder(out, "../../stdlib");
+    case 1:
+        return program_folder(out, "../share/pms");
+    case 2:
+        return PMS_DATA_DIR;
+    default:
+        *is_last = true;
+        return NULL;
+    }
+}
+
+/* Replace the last component of `path` by the name of a file that differs only in case. */
+static bool match_case(char path[PATH_MAX_BYTES])
+{
+    char folder[PATH_MAX_BYTES];
+    char *base = path + (path_base(path) - path);
+    folder_of(folder, path);
+    DIR *dir = opendir(folder[0] ? folder : ".");
+    bool is_found = false;
+    for (struct dirent *entry; dir && !is_found && (entry = readdir(dir));) {
+        is_found = strcasecmp(entry->d_name, base) == 0;
+        if (is_found)
+            memcpy(base, entry->d_name, strlen(base));
+    }
+    if (dir)
+        closedir(dir);
+    return is_found;
+}
+
+/* Look for one spelling of the name in every folder; returns the path in `out`. */
+static bool find_spelling(Parser *p, const char *name, bool is_any_case, char out[PATH_MAX_BYTES])
+{
+    bool is_last;
+    char place[PATH_MAX_BYTES];
+    for (int i = 0;; i++) {
+        const char *folder = search_folder(p, i, place, &is_last);
+        if (is_last)
+            return false;
+        if (!folder || !join(out, folder, name))
+            continue;
+        if (is_any_case ? match_case(out) && file_exists(out) : file_exists(out))
+            return true;
+        if (name[0] == '/')
+            return false;
+    }
+}
+
+static bool ends_with(const char *name, const char *extension)
+{
+    size_t length = strlen(name), tail = strlen(extension);
+    return length >= tail && strcmp(name + length - tail, extension) == 0;
+}
+
+/* Try the name with each extension, and bare: first when it has one, last when it has none. */
+static bool find_name(Parser *p, const char *name, const char *const *extensions, bool is_any_case,
+                      char out[PATH_MAX_BYTES])
+{
+    bool has_extension = false;
+    for (int i = 0; extensions && extensions[i]; i++)
+        has_extension = has_extension || ends_with(name, extensions[i]);
+    if (has_extension && find_spelling(p, name, is_any_case, out))
+        return true;
+    for (int i = 0; extensions && extensions[i]; i++) {
+        char longer[PATH_MAX_BYTES];
+        int length = snprintf(longer, sizeof longer, "%s%s", name, extensions[i]);
+        if (length < PATH_MAX_BYTES && find_spelling(p, longer, is_any_case, out))
+            return true;
+    }
+    return !has_extension && find_spelling(p, name, is_any_case, out);
+}
+
+const char *file_find(Parser *p, const char *name, const char *const *extensions)
+{
+    char path[PATH_MAX_BYTES], slashed[PATH_MAX_BYTES];
+    if (strlen(name) >= sizeof slashed)
+        return NULL;
+    bool is_found = find_name(p, name, extensions, false, path);
+    strcpy(slashed, name);
+    for (char *c = slashed; *c; c++)
+        if (*c == '\\')
+            *c = '/';
+    if (!is_found && strcmp(slashed, name) != 0)
+        is_found = find_name(p, slashed, extensions, false, path);
+    if (!is_found && extensions && find_name(p, slashed, extensions, true, path)) {
+        is_found = true;
+        parse_warn(p, WARN_FILE, p->last, "'%s' is not there, taking '%s'", name, path);
+    }
+    return is_found ? parse_copy(p, path, strlen(path) + 1) : NULL;
+}
+
+/* --- opening
+ * -------------------------------------------------------------------------------------------- */
+
+static TokenFile *file_load(Parser *p, const char *path)
+{
+    Arena *text = p->scene->text;
+    Source *source = parse_no_null(p, ARENA_NEW(text, Source));
+    source->path = parse_no_null(p, arena_strndup(text, path, strlen(path)));
+    Status status = file_read(p->diag, path, SOURCE_SIZE_MAX, text, &source->text, &source->size);
+    if (status != OK)
+        parse_fail_status(p, status);
+    return file_lex(p, source);
+}
+
+TokenFile *file_lex(Parser *p, const Source *source)
+{
+    TokenFile *file = parse_no_null(p, ARENA_NEW(p->arena, TokenFile));
+    Status status = lex_source(p->diag, source, &p->names, p->arena, file);
+    if (status != OK)
+        parse_fail_status(p, status);
+    if (strmap_set(&p->files, source->path, strlen(source->path), file) != 0)
+        parse_fail_memory(p);
+    return file;
+}
+
+/* A file may include itself behind a condition, but not for ever. */
+static void check_cycle(Parser *p, const TokenFile *file, Span call)
+{
+    int open = 0;
+    for (int i = 0; i < p->frame_count; i++)
+        open += p->frames[i].file == file && !p->frames[i].macro;
+    if (open >= INCLUDE_SELF_MAX)
+        parse_fail(p, call, "include cycle: '%s' includes itself again and again",
+                   file->source->path);
+    if (p->include_depth == INCLUDE_DEPTH_MAX)
+        parse_fail(p, call, "includes nest too deep (limit %d)", INCLUDE_DEPTH_MAX);
+}
+
+void file_open(Parser *p, const char *path, Span call)
+{
+    TokenFile *file = strmap_find(&p->files, path, strlen(path));
+    if (!file)
+        file = file_load(p, path);
+    check_cycle(p, file, call);
+    if (p->frame_count > 0)
+        p->include_depth++;
+    frame_push_file(p, file, call);
+}
+
+void include_directive(Parser *p)
+{
+    static const char *const extensions[] = {".inc", ".INC", NULL};
+    Span word = p->last, begin = parse_peek(p)->span;
+    const char *name = parse_path(p);
+    const char *path = file_find(p, name, extensions);
+    if (!path)
+        parse_fail(
+            p, span_join(begin, p->last),
+            "cannot find '%s' in the current folder, beside this file or on the library path",
+            name);
+    file_open(p, path, span_join(word, p->last));
+}
