@@ -39,6 +39,8 @@ bool box_index_any(const BoxIndex *index, Ray *ray, AccelTest test, void *query)
 /* A triangle met by a ray, in double: p = (1-u-v) a + u b + v c. */
 typedef struct TriHit {
     double t, u, v;
+    double t_error; /* bound on the error of t */
+    double t_slope; /* how far t may move when the ray is moved sideways by 1 */
     uint32_t triangle;
 } TriHit;
 
@@ -50,9 +52,14 @@ Status tri_index_new(Diag *diag, const V3 *vertices, uint32_t vertex_count, cons
                      uint32_t triangle_count, int threads, TriIndex **out);
 void tri_index_free(TriIndex *index);
 
+/* Rays of triangle queries may have directions of any length; t is in units of it. */
+
 /* Find the nearest triangle with tmin < t < tmax; equal t: the lowest number wins.  The test
  * is watertight: a ray through a shared edge meets one of its triangles at least. */
 bool tri_index_closest(const TriIndex *index, const Ray *ray, TriHit *out);
+
+/* Test one triangle as the index does; `triangle` of the hit is 0. */
+bool tri_test(const V3 corner[3], const Ray *ray, TriHit *out);
 
 /* Find all triangles along (tmin, tmax), ascending in t, at most `capacity`; returns how many
  * there are (may exceed capacity). */

@@ -33,7 +33,22 @@ typedef enum ShapeKind {
 typedef struct Shape Shape;
 typedef struct MeshData MeshData;
 
-/* Canonical forms, all in object space; Shape.xform takes them to the world. */
+/* Forms in object space; Shape.xform takes them to the world.  Spheres, boxes, planes and
+ * triangles fold simple transforms into their numbers, so that most have none. */
+typedef struct SphereParams {
+    V3 center;
+    double radius;
+} SphereParams;
+
+typedef struct BoxParams {
+    V3 lo, hi; /* lo <= hi; equal ones make a sheet */
+} BoxParams;
+
+typedef struct PlaneParams {
+    V3 normal; /* unit; inside is normal . p < distance.  Never transformed. */
+    double distance;
+} PlaneParams;
+
 typedef struct ConeParams {
     double bottom, top; /* radii at z = 0 and z = 1, both >= 0; a cylinder has two equal ones */
     bool is_open;       /* no caps */
@@ -48,47 +63,68 @@ typedef struct DiscParams {
 } DiscParams;
 
 typedef struct TriangleParams {
-    V3 corner[3]; /* world space when xform is the identity */
+    V3 corner[3]; /* world space: never transformed */
     V3 normal[3]; /* unit; used if is_smooth */
     bool is_smooth;
 } TriangleParams;
 
+/* How much rounding a leaf's own numbers bring: derived when it is made or transformed. */
+typedef struct ShapeRounding {
+    V3 row;       /* lengths of the rows of xform.from: object units per scene unit */
+    V3 offset;    /* magnitudes of the translation of xform.from */
+    V3 column;    /* lengths of the columns of xform.to: scene units per object unit */
+    double place; /* object units: rounding of the form's numbers */
+} ShapeRounding;
+
 struct Shape {
     ShapeKind kind;
     bool is_inverted;
-    bool is_transformed;  /* xform is not the identity */
-    uint32_t surface;     /* of a leaf: which Surface of the scene it shows */
-    Xform xform;          /* of a leaf: object space to world space */
+    bool is_transformed; /* xform is not the identity */
+    uint32_t surface;    /* of a leaf: which Surface of the scene it shows */
+    Xform xform;         /* of a leaf: object space to world space */
     union {
-        ConeParams cone;  /* unit z axis */
+        SphereParams sphere;
+        BoxParams box;
+        PlaneParams plane;
+        ConeParams cone; /* unit z axis */
         TorusParams torus;
         DiscParams disc;
         TriangleParams triangle;
         const MeshData *mesh; /* shared between instances */
-    } u;                  /* sphere: unit sphere; box: [-1,1]^3; plane: z < 0 is inside */
-    Shape **children;     /* of a CSG node; difference is an intersection with inverted ones */
+    } u;
+    Shape **children; /* of a CSG node; difference is an intersection with inverted ones */
     int child_count;
-    Shape **clips;        /* only what is inside all of these exists; never textured */
+    Shape **clips; /* only what is inside all of these exists (applied after the inversion);
+                      never textured */
     int clip_count;
+    ShapeRounding rounding;
+    bool is_finished;      /* the two below are set: shape_finish */
+    bool is_inside_beyond; /* what lies outside `reach` is inside the solid */
+    Bound reach;           /* around every crossing, visible or not */
 };
 
 /* One crossing of a line and a surface. */
 typedef struct Crossing {
     double t;          /* scene units */
-    double t_error;    /* bound on the absolute error of t, scene units */
+    double t_error;    /* bound on the absolute error of t, scene units; the last few bits of
+                          the shape's own numbers count as error too */
     const Shape *leaf; /* the primitive crossed */
     uint32_t part;     /* which side, cap or triangle of the leaf */
-    int8_t change;     /* +1 the line enters the solid here, -1 it leaves, 0 a sheet or inner wall */
-    int8_t leaf_change; /* the same for the leaf alone (inversions above it applied) */
-    bool is_visible;   /* false: bounds the solid but shows no surface (clip, disc's plane) */
-    bool is_flipped;   /* an odd number of inversions above the leaf: its normal points in */
-    double u, v;       /* of triangles: barycentrics; else unused */
+    uint32_t child;    /* used while lists are merged */
+    int8_t change; /* +1 the line enters the solid here, -1 it leaves, 0 a sheet or inner wall */
+    int8_t leaf_change; /* the same for the leaf alone (inversions above it applied); where walls
+                           of several leaves coincide, the net change: 0 at a wall shared by two */
+    bool is_visible;    /* false: bounds the solid but shows no surface (clip, disc's plane) */
+    bool
+        is_flipped; /* an odd number of inversions, the leaf's own included: its normal points in */
+    double u, v;    /* of triangles: barycentrics; else unused */
 } Crossing;
 
-/* A growing list of crossings, ascending in t.  Its memory is a thread's scratch. */
+/* A list of crossings, ascending in t.  Its memory is the scratch's: it lives until the next
+ * call with the same scratch. */
 typedef struct CrossList {
-    Crossing *items;
-    int count, capacity;
+    const Crossing *items;
+    int count;
     bool is_inside_before; /* the line starts (t = -infinity) inside the solid */
     bool is_overflown;     /* more crossings than CROSSINGS_MAX: some were dropped */
 } CrossList;
@@ -125,6 +161,11 @@ Shape *shape_copy(Arena *arena, const Shape *shape);
 /* Swap inside and outside, in place (De Morgan is implied: the flag sits on the node). */
 void shape_invert(Shape *shape);
 
+/* Derive what speeds up the questions below (bounds of CSG children), once the shape, its
+ * children and clips are complete.  Changing any of them afterwards needs another call on
+ * the root.  Without it answers are the same, only slower. */
+void shape_finish(Shape *shape);
+
 /* --- asking (any thread) ---------------------------------------------------------------- */
 
 bool shape_is_solid(const Shape *shape);
@@ -142,20 +183,23 @@ bool shape_is_inside(const Shape *shape, V3 p);
 /* Refine and describe the point of a crossing.
  *
  * p        the point ray_at(t), pulled onto the surface where that can be done exactly.
- * p_error  bound on the distance of p from the true surface point, scene units.
+ * p_error  bound on the distance of p from the surface, scene units, rounding of later
+ *          rays from there included: a ray that starts p_error off the surface stays off it.
  * ng       geometric normal, unit, outward of the solid the crossing belongs to (is_flipped
  *          and is_inverted applied).
- * ns       interpolated normal of smooth triangles, else ng; same orientation.
- * uv       the language's uv of the primitive. */
+ * ns       interpolated normal of smooth triangles, else ng; same orientation. */
 typedef struct ShapePoint {
     V3 p;
     double p_error;
     V3 ng, ns;
-    V2 uv;
 } ShapePoint;
 void shape_point(const Crossing *crossing, const Ray *ray, ShapePoint *out);
 
-/* Return a box around the shape; BOUND_ALL when it is not bounded. */
+/* Return the language's uv of the point p on `part` of `leaf`; u and v are the crossing's. */
+V2 shape_uv(const Shape *leaf, uint32_t part, double u, double v, V3 p);
+
+/* Return a box around all that can be seen of the shape; sides may be infinite (see
+ * bound_is_finite). */
 Bound shape_bound(const Shape *shape);
 
 #endif

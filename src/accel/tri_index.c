@@ -1,0 +1,270 @@
+/* An index over triangles: Embree finds the boxes of the triangles, the test is ours.
+ *
+ * The test shears space so that the ray becomes the z axis (after Woop, Benthin and Wald,
+ * Watertight Ray/Triangle Intersection, JCGT 2(1), 2013) and asks on which side of each edge
+ * the ray passes.  The sign of an edge function is exact for the sheared points, the same for
+ * both triangles at an edge, and an exact zero is decided as if the ray were moved by an
+ * infinitesimal step; so a line meets exactly one of the triangles around an edge or a corner
+ * on each side of a closed mesh.  SPDX-License-Identifier: Apache-2.0 */
+#include "accel/frame_int.h"
+
+#include "base/mem.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+struct TriIndex {
+    IndexFrame frame;
+    FrameScene scene;
+    const V3 *vertices;
+    const uint32_t *corners;
+    uint32_t count;
+};
+
+typedef struct Shear {
+    V3 o;           /* origin, moved to where the ray enters the index */
+    int kx, ky, kz; /* kz: the axis the ray goes along most */
+    double sx, sy, sz;
+    double start;   /* t of o */
+    double o_error; /* rounding of o */
+} Shear;
+
+typedef struct TriQuery {
+    struct RTCIntersectContext context; /* first: Embree hands it back */
+    const TriIndex *index;
+    Shear shear;
+    double tmin, tmax;
+    TriHit best;
+    TriHit *all; /* NULL: only the best */
+    int count, capacity;
+    FrameRay at;
+} TriQuery;
+
+/* A vertex in the sheared space: the ray is x = y = 0, and z is t along it. */
+typedef struct Sheared {
+    double x, y, z;
+} Sheared;
+
+static inline Sheared shear_point(const Shear *s, V3 p)
+{
+    p = v3_sub(p, s->o);
+    double along = v3_at(p, s->kz);
+    return (Sheared){v3_at(p, s->kx) - s->sx * along, v3_at(p, s->ky) - s->sy * along,
+                     s->sz * along};
+}
+
+/* Return a.x b.y - a.y b.x with the right sign.  The rounding error of the difference of two
+ * rounded products is below 2 ulps of the larger one; inside that the error terms decide. */
+static inline double edge(Sheared a, Sheared b)
+{
+    double p = a.x * b.y, q = a.y * b.x, e = p - q;
+    if (fabs(e) > 4 * EPS_DOUBLE * (fabs(p) + fabs(q)))
+        return e;
+    return e + (fma(a.x, b.y, -p) - fma(a.y, b.x, -q));
+}
+
+/* Return the side of an edge the ray passes on: as if it were moved a little in x, and much
+ * less in y, when it meets the edge exactly. */
+static inline bool is_left(double e, Sheared a, Sheared b)
+{
+    if (e != 0)
+        return e > 0;
+    return a.y != b.y ? a.y > b.y : b.x > a.x;
+}
+
+/* Make the shear of a ray that is moved to t = start. */
+static void shear_init(Shear *s, const Ray *ray, double start)
+{
+    V3 d = ray->d, o = start == 0 ? ray->o : ray_at(ray, start);
+    double far = v3_max_abs(ray->o) + fabs(start) * v3_max_abs(d);
+    s->start = start;
+    s->o_error = start == 0 ? 0 : 2 * EPS_DOUBLE * far;
+    V3 size = v3(fabs(d.x), fabs(d.y), fabs(d.z));
+    s->o = o;
+    s->kz = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
+    s->kx = (s->kz + 1) % 3;
+    s->ky = (s->kz + 2) % 3;
+    double z = v3_at(d, s->kz);
+    s->sx = v3_at(d, s->kx) / z;
+    s->sy = v3_at(d, s->ky) / z;
+    s->sz = 1 / z;
+}
+
+/* Bound the error of t: the sheared points are off by a few ulps of their distance, which moves
+ * t by that much, and by the slope of the triangle times it. */
+static void bound_error(const Shear *s, const Sheared p[3], double det, TriHit *hit)
+{
+    double width = 0, depth = 0, far = 0;
+    for (int i = 0; i < 3; i++) {
+        int next = i == 2 ? 0 : i + 1;
+        width = fmax(width, fabs(p[next].x - p[i].x) + fabs(p[next].y - p[i].y));
+        depth = fmax(depth, fabs(p[next].z - p[i].z));
+        far = fmax(far, fabs(p[i].z));
+    }
+    /* Along the ray's main axis a unit of t is at least 1/sqrt(3) of its length. */
+    double per_z = fabs(s->sz);
+    double off = s->o_error + 8 * EPS_DOUBLE * (far / per_z + width);
+    hit->t_slope = per_z + 2 * depth * width / fabs(det);
+    hit->t_error = off * hit->t_slope + 4 * EPS_DOUBLE * (fabs(s->start) + far);
+}
+
+/* Find where the line meets a triangle; false when it does not or t is not in (tmin, tmax). */
+static bool sheared_test(const Shear *s, const V3 *a, const V3 *b, const V3 *c, double tmin,
+                         double tmax, TriHit *out)
+{
+    Sheared p[3] = {shear_point(s, *a), shear_point(s, *b), shear_point(s, *c)};
+    double e0 = edge(p[1], p[2]), e1 = edge(p[2], p[0]), e2 = edge(p[0], p[1]);
+    bool left = is_left(e0, p[1], p[2]);
+    if (left != is_left(e1, p[2], p[0]) || left != is_left(e2, p[0], p[1]))
+        return false;
+    double det = e0 + e1 + e2;
+    if (det == 0) /* seen from its edge */
+        return false;
+    out->u = e1 / det;
+    out->v = e2 / det;
+    out->t = s->start + (e0 * p[0].z + e1 * p[1].z + e2 * p[2].z) / det;
+    if (!(out->t > tmin && out->t < tmax))
+        return false;
+    bound_error(s, p, det, out);
+    return true;
+}
+
+/* Test a triangle and keep the hit; returns whether tmax shrank. */
+static bool offer(TriQuery *q, uint32_t triangle)
+{
+    TriHit hit;
+    const uint32_t *c = q->index->corners + 3 * (size_t)triangle;
+    const V3 *v = q->index->vertices;
+    if (!sheared_test(&q->shear, &v[c[0]], &v[c[1]], &v[c[2]], q->tmin, q->tmax, &hit))
+        return false;
+    hit.triangle = triangle;
+    if (q->all) {
+        if (q->count < q->capacity)
+            q->all[q->count] = hit;
+        q->count++;
+        return false;
+    }
+    if (q->count && (hit.t > q->best.t || (hit.t == q->best.t && triangle > q->best.triangle)))
+        return false;
+    q->best = hit;
+    q->count = 1;
+    return true;
+}
+
+static void triangle_bounds(const struct RTCBoundsFunctionArguments *args)
+{
+    const TriIndex *index = args->geometryUserPtr;
+    const uint32_t *c = index->corners + 3 * (size_t)args->primID;
+    Bound box = BOUND_EMPTY;
+    for (int i = 0; i < 3; i++)
+        box = bound_add(box, index->vertices[c[i]]);
+    frame_box(&index->frame, box, args->bounds_o);
+}
+
+static void triangle_intersect(const struct RTCIntersectFunctionNArguments *args)
+{
+    TriQuery *q = (TriQuery *)args->context;
+    assert(args->N == 1);
+    if (offer(q, args->primID))
+        ((struct RTCRayHit *)args->rayhit)->ray.tfar = frame_end(&q->at, q->best.t);
+}
+
+/* Corner numbers out of range or vertices that are not numbers would break the index. */
+static Status check(Diag *diag, const V3 *vertices, uint32_t vertex_count, const uint32_t *corners,
+                    uint32_t triangle_count, Bound *all)
+{
+    *all = BOUND_EMPTY;
+    for (size_t i = 0; i < 3 * (size_t)triangle_count; i++) {
+        if (corners[i] >= vertex_count)
+            return diag_fail(diag, ERR_SCENE, "a triangle of a mesh has corner %u of %u",
+                             corners[i], vertex_count);
+        if (!v3_is_finite(vertices[corners[i]]))
+            return diag_fail(diag, ERR_SCENE, "vertex %u of a mesh is not finite", corners[i]);
+        *all = bound_add(*all, vertices[corners[i]]);
+    }
+    return OK;
+}
+
+Status tri_index_new(Diag *diag, const V3 *vertices, uint32_t vertex_count, const uint32_t *corners,
+                     uint32_t triangle_count, int threads, TriIndex **out)
+{
+    *out = NULL;
+    Bound all;
+    TRY(check(diag, vertices, vertex_count, corners, triangle_count, &all));
+    TriIndex *index = mem_alloc(sizeof *index);
+    if (!index)
+        return diag_no_memory(diag, "the index of a mesh");
+    index->vertices = vertices;
+    index->corners = corners;
+    index->count = triangle_count;
+    *out = index;
+    if (triangle_count == 0)
+        return OK;
+    index->frame = frame_of(all);
+    static const FrameCallbacks calls = {triangle_bounds, triangle_intersect, NULL};
+    Status status = frame_scene_new(diag, triangle_count, threads, &calls, index, &index->scene);
+    if (status != OK) {
+        tri_index_free(index);
+        *out = NULL;
+    }
+    return status;
+}
+
+void tri_index_free(TriIndex *index)
+{
+    if (!index)
+        return;
+    frame_scene_done(&index->scene);
+    mem_free(index);
+}
+
+/* Run a query whose kind of result is set up; results are in it. */
+static void run(const TriIndex *index, const Ray *ray, TriQuery *q)
+{
+    if (index->count == 0 || !frame_enter(&index->frame, ray, &q->at))
+        return;
+    q->index = index;
+    q->tmin = ray->tmin;
+    q->tmax = ray->tmax;
+    /* A ray that starts inside the index is not moved: nothing is rounded then. */
+    double entry = q->at.start + FRAME_PAD / q->at.per_t;
+    shear_init(&q->shear, ray, entry > ray->tmin || ray->tmin != 0 ? entry : 0);
+    rtcInitIntersectContext(&q->context);
+    rtcIntersect1(index->scene.scene, &q->context, &q->at.hit);
+}
+
+bool tri_index_closest(const TriIndex *index, const Ray *ray, TriHit *out)
+{
+    TriQuery q = {0};
+    run(index, ray, &q);
+    if (q.count)
+        *out = q.best;
+    return q.count > 0;
+}
+
+bool tri_test(const V3 corner[3], const Ray *ray, TriHit *out)
+{
+    Shear shear;
+    shear_init(&shear, ray, 0);
+    out->triangle = 0;
+    return sheared_test(&shear, &corner[0], &corner[1], &corner[2], ray->tmin, ray->tmax, out);
+}
+
+static int compare_hits(const void *a, const void *b)
+{
+    const TriHit *p = a, *q = b;
+    if (p->t != q->t)
+        return p->t < q->t ? -1 : 1;
+    return (p->triangle > q->triangle) - (p->triangle < q->triangle);
+}
+
+int tri_index_all(const TriIndex *index, const Ray *ray, TriHit *out, int capacity)
+{
+    TriHit none;
+    TriQuery q = {.all = capacity > 0 ? out : &none, .capacity = capacity};
+    run(index, ray, &q);
+    int kept = q.count < capacity ? q.count : capacity;
+    if (kept > 1)
+        qsort(out, (size_t)kept, sizeof *out, compare_hits);
+    return q.count;
+}

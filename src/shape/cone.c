@@ -1,0 +1,141 @@
+/* Cones and cylinders: along the z axis from z = 0 to 1.  Parts: 0 wall, 1 bottom, 2 top.
+ *
+ * The line is cut to the slab between the caps and to the inside of the wall; what is left is
+ * one piece, so that wall and caps meet without a gap.  The wall's discriminant is kept as a
+ * difference of squares, and the quadratic is solved about the point nearest to the middle.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "shape/shape_int.h"
+
+/* The wall x^2 + y^2 = (radius + growth z)^2 along a line: a h^2 + 2 b h + c < 0 inside. */
+typedef struct Wall {
+    double a, b, c, disc;
+    double doubt; /* bound on the error of the left side near a root */
+} Wall;
+
+static Wall wall_of(const ConeParams *cone, V3 f, V3 d, V3 error)
+{
+    double growth = cone->top - cone->bottom, k = growth * d.z;
+    double radius = cone->bottom + growth * f.z;
+    double gx = radius * d.x - k * f.x, gy = radius * d.y - k * f.y;
+    double cross = f.x * d.y - f.y * d.x;
+    double g = sqrt(gx * gx + gy * gy);
+    double most = fmax(cone->bottom, cone->top);
+    Wall w = {.a = d.x * d.x + d.y * d.y - k * k,
+              .b = f.x * d.x + f.y * d.y - k * radius,
+              .c = f.x * f.x + f.y * f.y - radius * radius,
+              .disc = (g - fabs(cross)) * (g + fabs(cross))};
+    w.doubt = 2 * most * (error.x + error.y + fabs(growth) * error.z + 4 * PLACE_EPS * most);
+    return w;
+}
+
+/* Bound the error of a root of the wall. */
+static double root_error(const Wall *w)
+{
+    double root = sqrt(w->disc);
+    return fmin(w->doubt / root, sqrt(2 * w->doubt / fabs(w->a)));
+}
+
+/* Cut the chord at t, from above or below. */
+static void cut_in(Chord *chord, double t, double error)
+{
+    if (t > chord->in.t)
+        chord->in = (LeafHit){t, error, 0, 1, true};
+}
+
+static void cut_out(Chord *chord, double t, double error)
+{
+    if (t < chord->out.t)
+        chord->out = (LeafHit){t, error, 0, -1, true};
+}
+
+/* Cut the chord to the inside of the wall; `base` is the t of h = 0.  Returns false when
+ * nothing is left. */
+static bool cut_wall(Chord *chord, const Wall *w, double base)
+{
+    if (!(w->disc > 0))
+        return w->a < 0 || (w->a == 0 && w->c < 0);
+    double root = sqrt(w->disc), q = -(w->b + copysign(root, w->b));
+    double h0 = q / w->a, h1 = w->c / q, own = root_error(w) + 4 * EPS_DOUBLE * fabs(base);
+    double first = base + fmin(h0, h1), last = base + fmax(h0, h1);
+    double first_error = own + 4 * EPS_DOUBLE * fabs(first);
+    double last_error = own + 4 * EPS_DOUBLE * fabs(last);
+    if (w->a > 0) {
+        cut_in(chord, first, first_error);
+        cut_out(chord, last, last_error);
+    } else if (w->a < 0) {
+        /* Inside before the first root and after the last, in one of the two nappes. */
+        double before = fmin(chord->out.t, first) - chord->in.t;
+        double after = chord->out.t - fmax(chord->in.t, last);
+        if (before > after)
+            cut_out(chord, first, first_error);
+        else
+            cut_in(chord, last, last_error);
+    } else { /* along the wall: one root */
+        double only = base + h1;
+        double error = own + 4 * EPS_DOUBLE * fabs(only);
+        if (w->b > 0)
+            cut_out(chord, only, error);
+        else
+            cut_in(chord, only, error);
+    }
+    return chord->in.t < chord->out.t;
+}
+
+void cone_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
+{
+    const ConeParams *cone = &shape->u.cone;
+    out->count = 0;
+    out->is_inside_before = false;
+    V3 o = v3(ray->o.x, ray->o.y, ray->o.z - 0.5);
+    double base = -v3_dot(o, ray->d) / v3_len2(ray->d);
+    V3 f = v3_mad(ray->o, base, ray->d), error = local_error(ray, base);
+    Chord chord = CHORD_LINE;
+    if (!chord_cut_slab(&chord, ray->o.z, ray->d.z, error.z + PLACE_EPS, 0, 1, 1, 2,
+                        !cone->is_open))
+        return;
+    Wall wall = wall_of(cone, f, ray->d, error);
+    if (cut_wall(&chord, &wall, base) && chord.in.t < chord.out.t)
+        chord_hits(&chord, out);
+}
+
+void cone_point(const Shape *shape, uint32_t part, V3 p, LocalPoint *out)
+{
+    const ConeParams *cone = &shape->u.cone;
+    double growth = cone->top - cone->bottom;
+    out->error = 2 * PLACE_EPS * (part ? 1 : fmax(cone->bottom, cone->top));
+    if (part) {
+        p.z = part == 1 ? 0 : 1;
+        out->p = p;
+        out->n = v3(0, 0, part == 1 ? -1 : 1);
+        return;
+    }
+    p.z = fmax(0, fmin(1, p.z));
+    double radius = cone->bottom + growth * p.z, rho = sqrt(p.x * p.x + p.y * p.y);
+    double pull = rho > 0 ? radius / rho : 0;
+    out->p = v3(p.x * pull, p.y * pull, p.z);
+    /* At the tip there is no normal: along the axis is as good as any. */
+    out->n = rho > 0 ? v3(p.x / rho, p.y / rho, -growth) : v3(0, 0, growth < 0 ? 1 : -1);
+}
+
+bool cone_is_inside(const Shape *shape, V3 p)
+{
+    const ConeParams *cone = &shape->u.cone;
+    double radius = cone->bottom + (cone->top - cone->bottom) * p.z;
+    double w = p.x * p.x + p.y * p.y;
+    if (cone->is_open)
+        return p.z >= 0 && p.z <= 1 && w <= radius * radius;
+    return p.z > 0 && p.z < 1 && w < radius * radius;
+}
+
+Bound cone_bound(const Shape *shape)
+{
+    const double(*m)[4] = shape->xform.to;
+    V3 reach = v3(hypot(m[0][0], m[0][1]), hypot(m[1][0], m[1][1]), hypot(m[2][0], m[2][1]));
+    Bound b = BOUND_EMPTY;
+    for (int end = 0; end < 2; end++) {
+        V3 c = xform_point(&shape->xform, v3(0, 0, end));
+        double r = end ? shape->u.cone.top : shape->u.cone.bottom;
+        b = bound_add(bound_add(b, v3_mad(c, r, reach)), v3_mad(c, -r, reach));
+    }
+    return bound_pad(b);
+}

@@ -1,0 +1,254 @@
+/* Constructive solid geometry on crossing lists.
+ *
+ * The lists of the children are put one behind the other on the scratch's stack, sorted along
+ * the line and swept once: the sweep knows which children it is inside of, and each event is
+ * kept, dropped or turned into an inner wall by the state before and after it.
+ *
+ * Crossings of different children whose error intervals overlap are one event.  So identical
+ * faces never leave a skin, and abutting solids have no gap, however the numbers were rounded.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "shape/shape_int.h"
+
+#include "base/mem.h"
+
+typedef enum Rule { RULE_UNION, RULE_MERGE, RULE_INTERSECTION } Rule;
+
+/* A sweep over the merged lists of the children of one node. */
+typedef struct Sweep {
+    Rule rule;
+    Crossing *items;
+    uint8_t *inside; /* per child */
+    int child_count, inside_count;
+    int written; /* results so far, from the start of items' range */
+} Sweep;
+
+static bool is_inside_node(const Sweep *s)
+{
+    return s->rule == RULE_INTERSECTION ? s->inside_count == s->child_count : s->inside_count > 0;
+}
+
+/* Would a wall of child `child` be seen, as far as the other children go? */
+static bool is_bare(const Sweep *s, uint32_t child)
+{
+    int others = s->inside_count - s->inside[child];
+    if (s->rule == RULE_INTERSECTION)
+        return others == s->child_count - 1;
+    return s->rule == RULE_UNION || others == 0;
+}
+
+static void step_over(Sweep *s, const Crossing *c)
+{
+    if (c->change == 0)
+        return;
+    uint8_t now = c->change > 0;
+    s->inside_count += now - s->inside[c->child];
+    s->inside[c->child] = now;
+}
+
+/* An event of one child alone. */
+static void sweep_single(Sweep *s, const Crossing *c)
+{
+    bool before = is_inside_node(s), bare = is_bare(s, c->child);
+    step_over(s, c);
+    if (!bare)
+        return;
+    Crossing kept = *c;
+    if (before == is_inside_node(s))
+        kept.change = 0;
+    if (kept.change || kept.is_visible)
+        s->items[s->written++] = kept;
+}
+
+/* Return the crossing that lends an event its look: going the way of the event if it has one
+ * (`change` not 0), visible rather than not, of the child written first. */
+static int choose(const Sweep *s, int from, int to, int change)
+{
+    int best = from, best_score = -1;
+    for (int i = from; i < to; i++) {
+        const Crossing *c = &s->items[i];
+        int score = 2 * (change == 0 || c->change == change) + c->is_visible;
+        if (score > best_score || (score == best_score && c->child < s->items[best].child)) {
+            best = i;
+            best_score = score;
+        }
+    }
+    return best;
+}
+
+/* Events of several children at one place. */
+static void sweep_together(Sweep *s, int from, int to)
+{
+    bool before = is_inside_node(s);
+    int net = 0, sheet = -1;
+    for (int i = from; i < to; i++) {
+        net += s->items[i].leaf_change;
+        if (sheet < 0 && s->items[i].change == 0 && is_bare(s, s->items[i].child))
+            sheet = i;
+    }
+    for (int i = from; i < to; i++)
+        step_over(s, &s->items[i]);
+    bool after = is_inside_node(s);
+    int change = after - before;
+    Crossing kept;
+    if (change) {
+        kept = s->items[choose(s, from, to, change)];
+    } else if (s->rule == RULE_UNION || (s->rule == RULE_MERGE && !before)) {
+        kept = s->items[choose(s, from, to, 0)];
+    } else if (sheet >= 0 && is_bare(s, s->items[sheet].child)) {
+        kept = s->items[sheet];
+    } else {
+        return;
+    }
+    kept.change = (int8_t)change;
+    kept.leaf_change = (int8_t)((net > 0) - (net < 0));
+    if (kept.change || kept.is_visible)
+        s->items[s->written++] = kept;
+}
+
+static bool is_before(const Crossing *a, const Crossing *b)
+{
+    return a->t < b->t || (a->t == b->t && a->child < b->child);
+}
+
+/* Sort in place without memory: shell sort, which is an insertion sort for short lists. */
+static void sort_crossings(Crossing *items, int count)
+{
+    static const int gaps[] = {28703, 10301, 4193, 1073, 281, 77, 23, 8, 1};
+    for (size_t g = 0; g < sizeof gaps / sizeof *gaps; g++) {
+        for (int i = gaps[g]; i < count; i++) {
+            if (!is_before(&items[i], &items[i - gaps[g]]))
+                continue;
+            Crossing item = items[i];
+            int place = i;
+            for (; place >= gaps[g] && is_before(&item, &items[place - gaps[g]]); place -= gaps[g])
+                items[place] = items[place - gaps[g]];
+            items[place] = item;
+        }
+    }
+}
+
+/* Sweep over items [base, count) of the scratch; what is kept replaces them. */
+static void sweep(ShapeScratch *scratch, int base, Sweep *s)
+{
+    s->items = scratch->items + base;
+    int count = scratch->count - base;
+    sort_crossings(s->items, count);
+    for (int i = 0; i < count;) {
+        double end = s->items[i].t + s->items[i].t_error;
+        bool is_alone = true;
+        int next = i + 1;
+        for (; next < count && s->items[next].t - s->items[next].t_error <= end; next++) {
+            end = fmax(end, s->items[next].t + s->items[next].t_error);
+            is_alone &= s->items[next].child == s->items[i].child;
+        }
+        if (!is_alone) {
+            sweep_together(s, i, next);
+            i = next;
+        }
+        for (; i < next; i++) {
+            Crossing c = s->items[i];
+            sweep_single(s, &c);
+        }
+    }
+    scratch->count = base + s->written;
+}
+
+/* Put the states of `count` children on the scratch's stack; returns where, or -1. */
+static long push_states(ShapeScratch *scratch, int count)
+{
+    size_t first = scratch->state_count, wanted = first + (size_t)count;
+    while (scratch->state_capacity < wanted) {
+        void *states = scratch->states;
+        if (mem_grow(&states, scratch->state_capacity, &scratch->state_capacity, 1)) {
+            scratch->is_overflown = true;
+            return -1;
+        }
+        scratch->states = states;
+    }
+    scratch->state_count = wanted;
+    return (long)first;
+}
+
+static void tag(ShapeScratch *scratch, int from, uint32_t child)
+{
+    for (int i = from; i < scratch->count; i++)
+        scratch->items[i].child = child;
+}
+
+/* List a node's children and merge them. */
+static bool node_list(const Shape *node, const Ray *ray, ShapeScratch *scratch)
+{
+    /* Inner walls of a union disappear when it is turned inside out. */
+    Sweep s = {.rule = node->kind == SHAPE_INTERSECTION                  ? RULE_INTERSECTION
+                       : node->kind == SHAPE_UNION && !node->is_inverted ? RULE_UNION
+                                                                         : RULE_MERGE,
+               .child_count = node->child_count};
+    int base = scratch->count;
+    long first = push_states(scratch, node->child_count);
+    if (first < 0)
+        return false;
+    bool is_empty = false;
+    for (int i = 0; i < node->child_count && !is_empty; i++) {
+        int from = scratch->count;
+        bool inside = csg_list(node->children[i], ray, scratch);
+        scratch->states[first + i] = inside;
+        s.inside_count += inside;
+        tag(scratch, from, (uint32_t)i);
+        /* A child the line never enters leaves nothing of an intersection. */
+        is_empty = s.rule == RULE_INTERSECTION && !inside && scratch->count == from;
+    }
+    if (is_empty) {
+        scratch->count = base;
+        scratch->state_count = (size_t)first;
+        return false;
+    }
+    s.inside = scratch->states + first;
+    bool inside_before = is_inside_node(&s);
+    sweep(scratch, base, &s);
+    scratch->state_count = (size_t)first;
+    return inside_before;
+}
+
+/* Cut the list from `base` on to the inside of the clips, whose own surfaces are not seen. */
+static bool clip_list(const Shape *shape, const Ray *ray, ShapeScratch *scratch, int base,
+                      bool is_inside)
+{
+    Sweep s = {
+        .rule = RULE_INTERSECTION, .child_count = shape->clip_count + 1, .inside_count = is_inside};
+    long first = push_states(scratch, s.child_count);
+    if (first < 0)
+        return false;
+    scratch->states[first] = is_inside;
+    tag(scratch, base, 0);
+    for (int i = 0; i < shape->clip_count; i++) {
+        int from = scratch->count;
+        bool inside = csg_list(shape->clips[i], ray, scratch);
+        scratch->states[first + i + 1] = inside;
+        s.inside_count += inside;
+        tag(scratch, from, (uint32_t)i + 1);
+        for (int k = from; k < scratch->count; k++)
+            scratch->items[k].is_visible = false;
+    }
+    s.inside = scratch->states + first;
+    bool inside_before = is_inside_node(&s);
+    sweep(scratch, base, &s);
+    scratch->state_count = (size_t)first;
+    return inside_before;
+}
+
+bool csg_list(const Shape *shape, const Ray *ray, ShapeScratch *scratch)
+{
+    if (shape->is_finished && !line_meets(&shape->reach, ray))
+        return shape->is_inside_beyond;
+    int base = scratch->count;
+    bool is_inside =
+        shape->kind < SHAPE_UNION ? leaf_list(shape, ray, scratch) : node_list(shape, ray, scratch);
+    if (shape->is_inverted) {
+        is_inside = !is_inside;
+        for (int i = base; i < scratch->count; i++)
+            crossing_invert(&scratch->items[i]);
+    }
+    if (shape->clip_count)
+        is_inside = clip_list(shape, ray, scratch, base, is_inside);
+    return is_inside;
+}

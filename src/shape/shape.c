@@ -1,0 +1,289 @@
+/* Asking shapes: the questions of shape.h, handed to the file of each kind.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "shape/shape_int.h"
+
+#include "base/mem.h"
+
+static inline void leaf_hits(const Shape *shape, const Ray *ray, LeafHits *out)
+{
+    LocalRay local;
+    local_ray(shape, ray, &local);
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+        sphere_hits(shape, &local, out);
+        break;
+    case SHAPE_BOX:
+        box_hits(shape, &local, out);
+        break;
+    case SHAPE_CONE:
+        cone_hits(shape, &local, out);
+        break;
+    case SHAPE_PLANE:
+        plane_hits(shape, &local, out);
+        break;
+    case SHAPE_TORUS:
+        torus_hits(shape, &local, out);
+        break;
+    case SHAPE_DISC:
+        disc_hits(shape, &local, out);
+        break;
+    default:
+        out->count = 0;
+        out->is_inside_before = false;
+    }
+}
+
+bool leaf_list(const Shape *shape, const Ray *ray, ShapeScratch *scratch)
+{
+    Crossing crossing;
+    if (shape->kind == SHAPE_MESH)
+        return mesh_list(shape, ray, scratch);
+    if (shape->kind == SHAPE_TRIANGLE) {
+        Ray line = {ray->o, ray->d, -INFINITY, INFINITY};
+        if (triangle_hit(shape, &line, &crossing))
+            scratch_push(scratch, &crossing);
+        return false;
+    }
+    LeafHits hits;
+    leaf_hits(shape, ray, &hits);
+    for (int i = 0; i < hits.count; i++) {
+        crossing_fill(shape, &hits.at[i], &crossing);
+        scratch_push(scratch, &crossing);
+    }
+    return hits.is_inside_before;
+}
+
+static bool leaf_closest(const Shape *shape, const Ray *ray, Crossing *out)
+{
+    LeafHits hits;
+    leaf_hits(shape, ray, &hits);
+    for (int i = 0; i < hits.count; i++) {
+        const LeafHit *hit = &hits.at[i];
+        if (hit->t > ray->tmin && hit->t < ray->tmax && hit->is_visible) {
+            crossing_fill(shape, hit, out);
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool list_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Crossing *out)
+{
+    CrossList list;
+    shape_crossings(shape, ray, scratch, &list);
+    for (int i = 0; i < list.count; i++) {
+        const Crossing *c = &list.items[i];
+        if (c->is_visible && c->t > ray->tmin && c->t < ray->tmax) {
+            *out = *c;
+            return true;
+        }
+    }
+    return false;
+}
+
+bool shape_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Crossing *out)
+{
+    if (shape->kind >= SHAPE_UNION || shape->clip_count)
+        return list_closest(shape, ray, scratch, out);
+    bool is_hit = shape->kind == SHAPE_MESH       ? mesh_closest(shape, ray, out)
+                  : shape->kind == SHAPE_TRIANGLE ? triangle_hit(shape, ray, out)
+                                                  : leaf_closest(shape, ray, out);
+    if (is_hit && shape->is_inverted)
+        crossing_invert(out);
+    return is_hit;
+}
+
+void shape_crossings(const Shape *shape, const Ray *ray, ShapeScratch *scratch, CrossList *out)
+{
+    scratch->count = 0;
+    scratch->state_count = 0;
+    scratch->is_overflown = false;
+    out->is_inside_before = csg_list(shape, ray, scratch);
+    out->items = scratch->items;
+    out->count = scratch->count;
+    out->is_overflown = scratch->is_overflown;
+}
+
+bool shape_is_solid(const Shape *shape)
+{
+    static const bool is_solid[SHAPE_COUNT] = {
+#define X(id, name, solid) solid,
+#include "shape/shape.def"
+#undef X
+    };
+    if (shape->kind == SHAPE_MESH)
+        return shape->u.mesh->has_inside;
+    return is_solid[shape->kind];
+}
+
+static bool leaf_is_inside(const Shape *shape, V3 p)
+{
+    if (shape->is_transformed)
+        p = xform_point_back(&shape->xform, p);
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+        return sphere_is_inside(shape, p);
+    case SHAPE_BOX:
+        return box_is_inside(shape, p);
+    case SHAPE_CONE:
+        return cone_is_inside(shape, p);
+    case SHAPE_PLANE:
+        return plane_is_inside(shape, p);
+    case SHAPE_TORUS:
+        return torus_is_inside(shape, p);
+    case SHAPE_DISC:
+        return disc_is_inside(shape, p);
+    case SHAPE_MESH:
+        return mesh_is_inside(shape, p);
+    default:
+        return false;
+    }
+}
+
+/* Are any (or all) of the parts around p? */
+static bool count_inside(Shape *const *parts, int count, V3 p, bool is_all)
+{
+    for (int i = 0; i < count; i++)
+        if (shape_is_inside(parts[i], p) != is_all)
+            return !is_all;
+    return is_all;
+}
+
+bool shape_is_inside(const Shape *shape, V3 p)
+{
+    const Bound *b = &shape->reach;
+    if (shape->is_finished && (p.x < b->lo.x || p.x > b->hi.x || p.y < b->lo.y || p.y > b->hi.y ||
+                               p.z < b->lo.z || p.z > b->hi.z))
+        return shape->is_inside_beyond;
+    bool is_inside = shape->kind < SHAPE_UNION ? leaf_is_inside(shape, p)
+                                               : count_inside(shape->children, shape->child_count,
+                                                              p, shape->kind == SHAPE_INTERSECTION);
+    return is_inside != shape->is_inverted &&
+           count_inside(shape->clips, shape->clip_count, p, true);
+}
+
+/* The point of a solid primitive, in its own space. */
+static void leaf_point(const Shape *leaf, uint32_t part, V3 p, LocalPoint *out)
+{
+    switch (leaf->kind) {
+    case SHAPE_SPHERE:
+        sphere_point(leaf, p, out);
+        break;
+    case SHAPE_BOX:
+        box_point(leaf, part, p, out);
+        break;
+    case SHAPE_CONE:
+        cone_point(leaf, part, p, out);
+        break;
+    case SHAPE_PLANE:
+        plane_point(leaf, p, out);
+        break;
+    case SHAPE_TORUS:
+        torus_point(leaf, part, p, out);
+        break;
+    default:
+        disc_point(leaf, p, out);
+    }
+}
+
+/* Bound how far, in scene units, rounding takes a point from where the shape sees it. */
+static double world_error(const Shape *leaf, V3 p, double local_error)
+{
+    const ShapeRounding *r = &leaf->rounding;
+    double size = v3_sum_abs(p);
+    V3 local = v3_scale(v3_mad(r->offset, size, r->row), 2 * PLACE_EPS);
+    local = v3_add(local, v3(local_error, local_error, local_error));
+    return v3_dot(local, r->column) + 4 * EPS_DOUBLE * size;
+}
+
+static void to_world(const Crossing *c, V3 p, double error, ShapePoint *out)
+{
+    const Shape *leaf = c->leaf;
+    if (leaf->is_transformed) {
+        out->p = xform_point(&leaf->xform, p);
+        out->ng = v3_unit(xform_normal(&leaf->xform, out->ng));
+        out->ns = v3_unit(xform_normal(&leaf->xform, out->ns));
+        out->p_error = world_error(leaf, out->p, error);
+    } else {
+        out->p = p;
+        out->p_error = 2 * error + 8 * EPS_DOUBLE * v3_sum_abs(p);
+    }
+}
+
+void shape_point(const Crossing *crossing, const Ray *ray, ShapePoint *out)
+{
+    const Shape *leaf = crossing->leaf;
+    V3 p = ray_at(ray, crossing->t);
+    if (leaf->kind == SHAPE_TRIANGLE) {
+        triangle_point(leaf, crossing, p, out);
+        to_world(crossing, out->p, out->p_error, out);
+    } else if (leaf->kind == SHAPE_MESH) {
+        mesh_point(leaf, crossing, p, out);
+        out->ng = v3_unit(out->ng);
+        out->ns = v3_unit(out->ns);
+        to_world(crossing, out->p, out->p_error, out);
+    } else {
+        LocalPoint local;
+        if (leaf->is_transformed)
+            p = xform_point_back(&leaf->xform, p);
+        leaf_point(leaf, crossing->part, p, &local);
+        out->ng = out->ns = local.n;
+        to_world(crossing, local.p, local.error, out);
+        if (!leaf->is_transformed && leaf->kind == SHAPE_TORUS)
+            out->ng = v3_unit(out->ng);
+        out->ns = out->ng;
+    }
+    if (crossing->is_flipped) {
+        out->ng = v3_neg(out->ng);
+        out->ns = v3_neg(out->ns);
+    }
+}
+
+V2 shape_uv(const Shape *leaf, uint32_t part, double u, double v, V3 p)
+{
+    V3 local = leaf->is_transformed ? xform_point_back(&leaf->xform, p) : p;
+    switch (leaf->kind) {
+    case SHAPE_SPHERE:
+        return sphere_uv(leaf, local);
+    case SHAPE_BOX:
+        return box_uv(leaf, part, local);
+    case SHAPE_TORUS:
+        return torus_uv(leaf, local);
+    case SHAPE_MESH:
+        if (leaf->u.mesh->uvs)
+            return mesh_uv(leaf, part, u, v);
+        break;
+    default:
+        break;
+    }
+    return (V2){p.x, p.y}; /* the language's way: the world's x and y */
+}
+
+ShapeScratch *shape_scratch_new(void)
+{
+    return mem_alloc(sizeof(ShapeScratch));
+}
+
+void shape_scratch_free(ShapeScratch *scratch)
+{
+    if (!scratch)
+        return;
+    mem_free(scratch->items);
+    mem_free(scratch->states);
+    mem_free(scratch->triangles);
+    mem_free(scratch);
+}
+
+void scratch_push(ShapeScratch *scratch, const Crossing *crossing)
+{
+    if ((size_t)scratch->count == scratch->capacity) {
+        void *items = scratch->items;
+        if (scratch->count >= CROSSINGS_MAX ||
+            mem_grow(&items, scratch->capacity, &scratch->capacity, sizeof *crossing)) {
+            scratch->is_overflown = true;
+            return;
+        }
+        scratch->items = items;
+    }
+    scratch->items[scratch->count++] = *crossing;
+}

@@ -1,0 +1,140 @@
+/* Boxes around shapes.
+ *
+ * Two boxes matter: one around what can be seen (shape_bound, for the ray index), and one around
+ * every crossing, seen or not (the reach), beyond which all is inside or all outside; a line
+ * that misses it needs no list.  SPDX-License-Identifier: Apache-2.0 */
+#include "shape/shape_int.h"
+
+static Bound leaf_bound(const Shape *shape)
+{
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+        return sphere_bound(shape);
+    case SHAPE_BOX:
+        return box_bound(shape);
+    case SHAPE_CONE:
+        return cone_bound(shape);
+    case SHAPE_PLANE:
+        return plane_bound(shape, false);
+    case SHAPE_TORUS:
+        return torus_bound(shape);
+    case SHAPE_DISC:
+        return disc_bound(shape);
+    case SHAPE_TRIANGLE:
+        return triangle_bound(shape);
+    case SHAPE_MESH:
+        return mesh_bound(shape);
+    default:
+        return BOUND_ALL;
+    }
+}
+
+/* Narrow `box` to the reach of what all `parts` must contain; returns false if one of them is
+ * not inside beyond its reach, and then the box is as narrow as they say. */
+static void narrow_to(Shape *const *parts, int count, Bound *box, bool *is_inside_beyond)
+{
+    for (int i = 0; i < count; i++) {
+        bool beyond;
+        Bound reach = shape_reach(parts[i], &beyond);
+        if (!beyond)
+            *box = bound_intersect(*box, reach);
+        *is_inside_beyond &= beyond;
+    }
+}
+
+static Bound intersection_reach(const Shape *shape, bool *is_inside_beyond)
+{
+    Bound box = BOUND_ALL, all = BOUND_EMPTY;
+    *is_inside_beyond = true;
+    narrow_to(shape->children, shape->child_count, &box, is_inside_beyond);
+    if (!*is_inside_beyond)
+        return box;
+    for (int i = 0; i < shape->child_count; i++) {
+        bool beyond;
+        all = bound_union(all, shape_reach(shape->children[i], &beyond));
+    }
+    return all;
+}
+
+static Bound union_reach(const Shape *shape, bool *is_inside_beyond)
+{
+    Bound all = BOUND_EMPTY;
+    *is_inside_beyond = false;
+    for (int i = 0; i < shape->child_count; i++) {
+        bool beyond;
+        all = bound_union(all, shape_reach(shape->children[i], &beyond));
+        *is_inside_beyond |= beyond;
+    }
+    return all;
+}
+
+static Bound plane_reach(const Shape *shape)
+{
+    Shape plane = *shape;
+    if (shape->is_inverted)
+        plane.u.plane = (PlaneParams){v3_neg(shape->u.plane.normal), -shape->u.plane.distance};
+    return plane_bound(&plane, true);
+}
+
+Bound shape_reach(const Shape *shape, bool *is_inside_beyond)
+{
+    *is_inside_beyond = shape->is_inside_beyond;
+    if (shape->is_finished)
+        return shape->reach;
+    Bound box;
+    if (shape->kind == SHAPE_INTERSECTION)
+        box = intersection_reach(shape, is_inside_beyond);
+    else if (shape->kind >= SHAPE_UNION)
+        box = union_reach(shape, is_inside_beyond);
+    else
+        box = shape->kind == SHAPE_DISC ? BOUND_ALL : leaf_bound(shape);
+    if (shape->kind == SHAPE_PLANE) /* half the world: nothing beyond is inside */
+        box = plane_reach(shape);
+    else if (shape->is_inverted)
+        *is_inside_beyond = !*is_inside_beyond;
+    bool is_inside = *is_inside_beyond;
+    Bound clipped = box;
+    narrow_to(shape->clips, shape->clip_count, &clipped, is_inside_beyond);
+    if (is_inside && shape->clip_count) {
+        /* All of the world but a hole: what is left of it by the clips. */
+        Bound world = BOUND_ALL;
+        bool beyond = true;
+        narrow_to(shape->clips, shape->clip_count, &world, &beyond);
+        return beyond ? BOUND_ALL : world;
+    }
+    return clipped;
+}
+
+Bound shape_bound(const Shape *shape)
+{
+    bool beyond;
+    Bound seen = BOUND_EMPTY, reach = shape_reach(shape, &beyond);
+    if (shape->kind < SHAPE_UNION)
+        return bound_intersect(leaf_bound(shape), reach);
+    for (int i = 0; i < shape->child_count; i++)
+        seen = bound_union(seen, shape_bound(shape->children[i]));
+    return bound_intersect(seen, reach);
+}
+
+/* Narrow [*near, *far] to a slab.  The t are exact to a few of their own ulps. */
+static inline bool narrow(double o, double d, double lo, double hi, double *near, double *far)
+{
+    if (d == 0)
+        return o >= lo && o <= hi;
+    double inverse = 1 / d, t0 = (lo - o) * inverse, t1 = (hi - o) * inverse;
+    double first = t0 < t1 ? t0 : t1, last = t0 < t1 ? t1 : t0;
+    first -= 4 * EPS_DOUBLE * fabs(first);
+    last += 4 * EPS_DOUBLE * fabs(last);
+    /* An infinite side gives infinities, or no number at all: neither narrows. */
+    *near = first > *near ? first : *near;
+    *far = last < *far ? last : *far;
+    return !(*near > *far);
+}
+
+bool line_meets(const Bound *b, const Ray *ray)
+{
+    double near = -INFINITY, far = INFINITY;
+    return narrow(ray->o.x, ray->d.x, b->lo.x, b->hi.x, &near, &far) &&
+           narrow(ray->o.y, ray->d.y, b->lo.y, b->hi.y, &near, &far) &&
+           narrow(ray->o.z, ray->d.z, b->lo.z, b->hi.z, &near, &far);
+}

@@ -1,0 +1,199 @@
+/* What the files of the shapes share.
+ *
+ * A leaf lists the crossings of a whole line in its own space, t staying in scene units: a ray
+ * is taken there without making its direction unit.  Bounds on the rounding of the ray go
+ * with it.  SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_SHAPE_SHAPE_INT_H
+#define PMS_SHAPE_SHAPE_INT_H
+
+#include "math/eps.h"
+#include "shape/mesh.h"
+#include "shape/shape.h"
+
+/* Relative rounding allowed for the numbers that place a shape: its matrices are products of a
+ * few transforms, its corners sums of a few terms. */
+#define PLACE_EPS (8 * EPS_DOUBLE)
+
+/* A ray in the space of a leaf.  d is not unit. */
+typedef struct LocalRay {
+    V3 o, d;
+    V3 o_error, d_error; /* bounds per axis; 0 for leaves without transform */
+} LocalRay;
+
+typedef struct LeafHit {
+    double t, t_error;
+    uint32_t part;
+    int8_t change;
+    bool is_visible;
+} LeafHit;
+
+/* The crossings of a leaf and a line, ascending, before any inversion. */
+enum { LEAF_HITS_MAX = 4 };
+typedef struct LeafHits {
+    int count;
+    bool is_inside_before;
+    LeafHit at[LEAF_HITS_MAX];
+} LeafHits;
+
+/* A point in the space of a leaf, pulled onto its surface. */
+typedef struct LocalPoint {
+    V3 p, n;      /* n: outward, any length */
+    double error; /* bound on the distance from the surface, rounding of p alone */
+} LocalPoint;
+
+static inline double v3_sum_abs(V3 a)
+{
+    return fabs(a.x) + fabs(a.y) + fabs(a.z);
+}
+static inline V3 v3_abs(V3 a)
+{
+    return v3(fabs(a.x), fabs(a.y), fabs(a.z));
+}
+
+static inline void local_ray(const Shape *shape, const Ray *ray, LocalRay *out)
+{
+    if (!shape->is_transformed) {
+        *out = (LocalRay){.o = ray->o, .d = ray->d};
+        return;
+    }
+    const ShapeRounding *r = &shape->rounding;
+    double size = v3_sum_abs(ray->o);
+    out->o = xform_point_back(&shape->xform, ray->o);
+    out->d = xform_dir_back(&shape->xform, ray->d);
+    out->o_error = v3_scale(v3_mad(r->offset, size, r->row), PLACE_EPS);
+    out->d_error = v3_scale(r->row, PLACE_EPS);
+}
+
+/* Bound the error of the local points at t, per axis, without the shape's own. */
+static inline V3 local_error(const LocalRay *ray, double t)
+{
+    t = fabs(t);
+    return v3(ray->o_error.x + t * ray->d_error.x +
+                  4 * EPS_DOUBLE * (fabs(ray->o.x) + t * fabs(ray->d.x)),
+              ray->o_error.y + t * ray->d_error.y +
+                  4 * EPS_DOUBLE * (fabs(ray->o.y) + t * fabs(ray->d.y)),
+              ray->o_error.z + t * ray->d_error.z +
+                  4 * EPS_DOUBLE * (fabs(ray->o.z) + t * fabs(ray->d.z)));
+}
+
+/* The part of a line inside a convex solid. */
+typedef struct Chord {
+    LeafHit in, out; /* t may be infinite; then the other fields mean nothing */
+} Chord;
+
+#define CHORD_LINE ((Chord){{.t = -INFINITY}, {.t = INFINITY}})
+
+/* Cut a chord to the slab lo <= o + t d <= hi; lo_part and hi_part name its sides.  Returns
+ * false when nothing is left. */
+bool chord_cut_slab(Chord *chord, double o, double d, double error, double lo, double hi,
+                    uint32_t lo_part, uint32_t hi_part, bool is_visible);
+
+/* Turn a chord into hits. */
+void chord_hits(const Chord *chord, LeafHits *out);
+
+/* Per kind: the crossings, and the point of one.  They may assume a leaf of their kind. */
+void sphere_hits(const Shape *shape, const LocalRay *ray, LeafHits *out);
+void sphere_point(const Shape *shape, V3 p, LocalPoint *out);
+V2 sphere_uv(const Shape *shape, V3 p);
+bool sphere_is_inside(const Shape *shape, V3 p);
+Bound sphere_bound(const Shape *shape);
+
+void box_hits(const Shape *shape, const LocalRay *ray, LeafHits *out);
+void box_point(const Shape *shape, uint32_t part, V3 p, LocalPoint *out);
+V2 box_uv(const Shape *shape, uint32_t part, V3 p);
+bool box_is_inside(const Shape *shape, V3 p);
+Bound box_bound(const Shape *shape);
+
+void cone_hits(const Shape *shape, const LocalRay *ray, LeafHits *out);
+void cone_point(const Shape *shape, uint32_t part, V3 p, LocalPoint *out);
+bool cone_is_inside(const Shape *shape, V3 p);
+Bound cone_bound(const Shape *shape);
+
+void plane_hits(const Shape *shape, const LocalRay *ray, LeafHits *out);
+void plane_point(const Shape *shape, V3 p, LocalPoint *out);
+bool plane_is_inside(const Shape *shape, V3 p);
+/* is_solid: around the inside, else around the surface. */
+Bound plane_bound(const Shape *shape, bool is_solid);
+
+void torus_hits(const Shape *shape, const LocalRay *ray, LeafHits *out);
+void torus_point(const Shape *shape, uint32_t part, V3 p, LocalPoint *out);
+V2 torus_uv(const Shape *shape, V3 p);
+bool torus_is_inside(const Shape *shape, V3 p);
+Bound torus_bound(const Shape *shape);
+
+void disc_hits(const Shape *shape, const LocalRay *ray, LeafHits *out);
+void disc_point(const Shape *shape, V3 p, LocalPoint *out);
+bool disc_is_inside(const Shape *shape, V3 p);
+Bound disc_bound(const Shape *shape);
+
+/* Triangles live in world space; u and v are barycentrics. */
+bool triangle_hit(const Shape *shape, const Ray *ray, Crossing *out);
+void triangle_point(const Shape *shape, const Crossing *crossing, V3 p, ShapePoint *out);
+Bound triangle_bound(const Shape *shape);
+
+bool mesh_closest(const Shape *shape, const Ray *ray, Crossing *out);
+void mesh_point(const Shape *shape, const Crossing *crossing, V3 p, ShapePoint *out);
+V2 mesh_uv(const Shape *shape, uint32_t triangle, double u, double v);
+bool mesh_is_inside(const Shape *shape, V3 p);
+Bound mesh_bound(const Shape *shape);
+
+/* Enlarge a box by the rounding of the numbers it was made of. */
+static inline Bound bound_pad(Bound b)
+{
+    V3 pad = v3_scale(v3_add(v3_abs(b.lo), v3_abs(b.hi)), 2 * PLACE_EPS);
+    return (Bound){v3_sub(b.lo, pad), v3_add(b.hi, pad)};
+}
+
+/* Does the line of a ray meet the box?  Never says no by rounding. */
+bool line_meets(const Bound *b, const Ray *ray);
+
+/* Return the box that holds every crossing of a shape; *is_inside_beyond: the state of what
+ * lies outside it. */
+Bound shape_reach(const Shape *shape, bool *is_inside_beyond);
+
+/* The scratch memory: a stack of crossings. */
+struct ShapeScratch {
+    Crossing *items;
+    size_t capacity;
+    int count;
+    bool is_overflown;
+    uint8_t *states; /* of the children of the nodes being merged */
+    size_t state_capacity, state_count;
+    TriHit *triangles;
+    size_t triangle_capacity;
+};
+
+/* Push a crossing; when the stack is full or memory is out it is dropped and the scratch says
+ * so. */
+void scratch_push(ShapeScratch *scratch, const Crossing *crossing);
+
+/* Push the crossings of a leaf or of a mesh, without inversion and clips; returns whether the
+ * line starts inside. */
+bool leaf_list(const Shape *shape, const Ray *ray, ShapeScratch *scratch);
+bool mesh_list(const Shape *shape, const Ray *ray, ShapeScratch *scratch);
+
+/* Push the crossings of any shape, inversion and clips applied; returns whether the line starts
+ * inside. */
+bool csg_list(const Shape *shape, const Ray *ray, ShapeScratch *scratch);
+
+/* Fill a crossing from a leaf's hit (no inversion applied). */
+static inline void crossing_fill(const Shape *leaf, const LeafHit *hit, Crossing *out)
+{
+    *out = (Crossing){.t = hit->t,
+                      .t_error = hit->t_error,
+                      .leaf = leaf,
+                      .part = hit->part,
+                      .change = hit->change,
+                      .leaf_change = hit->change,
+                      .is_visible = hit->is_visible};
+}
+
+/* Turn a crossing into that of the complement. */
+static inline void crossing_invert(Crossing *c)
+{
+    c->change = (int8_t)-c->change;
+    c->leaf_change = (int8_t)-c->leaf_change;
+    c->is_flipped = !c->is_flipped;
+}
+
+#endif

@@ -1,0 +1,70 @@
+/* Spheres.
+ *
+ * The quadratic is solved about the point of the line nearest to the centre, where nothing
+ * cancels however far the ray starts away.  SPDX-License-Identifier: Apache-2.0 */
+#include "shape/shape_int.h"
+
+void sphere_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
+{
+    double r = shape->u.sphere.radius;
+    V3 o = v3_sub(ray->o, shape->u.sphere.center);
+    double a = v3_len2(ray->d), inverse = 1 / a;
+    double nearest = -v3_dot(o, ray->d) * inverse;
+    V3 f = v3_mad(o, nearest, ray->d);
+    /* What rounding left of f along the ray is put back. */
+    double left = v3_dot(f, ray->d) * inverse;
+    double missed = r * r - v3_len2(f) + left * left * a;
+    out->count = 0;
+    out->is_inside_before = false;
+    if (!(missed > 0))
+        return;
+    double middle = nearest - left, half = sqrt(missed * inverse);
+    /* f is off by `off`; the half chord by off f / half, or the root of what `missed` is off. */
+    double off = 4 * EPS_DOUBLE * v3_sum_abs(o) + v3_sum_abs(ray->o_error) +
+                 fabs(middle) * v3_sum_abs(ray->d_error) + shape->rounding.place;
+    double speed2 = inverse; /* (1/|d|)^2 */
+    double doubt = 2 * r * off + 6 * EPS_DOUBLE * r * r;
+    double own = doubt * speed2 / half, most = sqrt(doubt * speed2);
+    double error =
+        (own < most ? own : most) + off * sqrt(speed2) + 4 * EPS_DOUBLE * (fabs(middle) + half);
+    out->count = 2;
+    out->at[0] = (LeafHit){middle - half, error, 0, 1, true};
+    out->at[1] = (LeafHit){middle + half, error, 0, -1, true};
+}
+
+void sphere_point(const Shape *shape, V3 p, LocalPoint *out)
+{
+    double r = shape->u.sphere.radius;
+    V3 n = v3_unit(v3_sub(p, shape->u.sphere.center));
+    out->p = v3_mad(shape->u.sphere.center, r, n);
+    out->n = n;
+    out->error = shape->rounding.place + 8 * EPS_DOUBLE * r;
+}
+
+V2 sphere_uv(const Shape *shape, V3 p)
+{
+    V3 n = v3_unit(v3_sub(p, shape->u.sphere.center));
+    double turn = atan2(n.z, n.x) / (2 * PMS_PI);
+    return (V2){turn < 0 ? turn + 1 : turn, 0.5 + asin(fmax(-1, fmin(1, n.y))) / PMS_PI};
+}
+
+bool sphere_is_inside(const Shape *shape, V3 p)
+{
+    double r = shape->u.sphere.radius;
+    return v3_len2(v3_sub(p, shape->u.sphere.center)) < r * r;
+}
+
+Bound sphere_bound(const Shape *shape)
+{
+    double r = shape->u.sphere.radius;
+    V3 c = shape->u.sphere.center, half = v3(r, r, r);
+    if (shape->is_transformed) {
+        /* The rows of the matrix are how far the unit ball reaches along each axis. */
+        const double(*m)[4] = shape->xform.to;
+        c = xform_point(&shape->xform, c);
+        half =
+            v3(r * v3_len(v3(m[0][0], m[0][1], m[0][2])), r * v3_len(v3(m[1][0], m[1][1], m[1][2])),
+               r * v3_len(v3(m[2][0], m[2][1], m[2][2])));
+    }
+    return bound_pad((Bound){v3_sub(c, half), v3_add(c, half)});
+}
