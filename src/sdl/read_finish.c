@@ -157,7 +157,7 @@ static void read_old_interior_item(Parser *p, Finish *f)
     Token word = parse_next(p);
     parse_warn(p, WARN_LANGUAGE, word.span, "this item belongs in `interior`");
     if (word.kind == KW_IOR)
-        f->ior = (float)read_above_zero(p, "ior");
+        f->ior = (float)read_ior(p);
     else if (word.kind == KW_CAUSTICS)
         f->caustics = (float)read_not_negative(p, "caustics");
     else
@@ -238,7 +238,7 @@ static void read_finish_item(Parser *p, Finish *f)
         break;
     case KW_CONSERVE_ENERGY:
         parse_next(p);
-        f->conserves_energy = parse_flag(p);
+        f->conserves_energy = true;
         break;
     case KW_IOR:
     case KW_REFRACTION:

@@ -86,6 +86,10 @@ const Finish *read_finish(Parser *p, const Finish *base);
 const Texture *read_texture(Parser *p);
 const Interior *read_interior(Parser *p, const Interior *base_or_null);
 const Material *read_material(Parser *p);
+
+/* Read an index of refraction; one that cannot be becomes 1 with a warning. */
+double read_ior(Parser *p);
+
 const ColorMap *read_color_map(Parser *p);
 
 /* Return a texture with another pigment or finish in its top layer. */

@@ -1,13 +1,23 @@
 /* interior and material.  SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/read_int.h"
 
+double read_ior(Parser *p)
+{
+    Span span;
+    double ior = read_finite(p, "ior", &span);
+    if (ior > 0)
+        return ior;
+    parse_warn(p, WARN_VALUE, span, "ior wants a number above 0, got %g: 1 is used", ior);
+    return 1;
+}
+
 static void read_interior_item(Parser *p, Interior *interior)
 {
     Token head = *parse_peek(p);
     switch (head.kind) {
     case KW_IOR:
         parse_next(p);
-        interior->ior = read_above_zero(p, "ior");
+        interior->ior = read_ior(p);
         break;
     case KW_CAUSTICS:
         parse_next(p);

@@ -80,6 +80,13 @@ static void read_area_light(Parser *p, Light *light)
     light->area.size2 = read_area_size(p);
 }
 
+/* Levels below 0 or beyond what any grid needs are its ends. */
+static int read_adaptive(Parser *p)
+{
+    long level = parse_int(p, "adaptive", -1000000000, 1000000000);
+    return level < 0 ? 0 : level > ADAPTIVE_OFF ? ADAPTIVE_OFF : (int)level;
+}
+
 /* The items of area lights; returns false if none comes next. */
 static bool read_area_item(Parser *p, Light *light)
 {
@@ -89,7 +96,7 @@ static bool read_area_item(Parser *p, Light *light)
         return true;
     case KW_ADAPTIVE:
         parse_next(p);
-        light->area.adaptive = (int)parse_int(p, "adaptive", 0, ADAPTIVE_OFF);
+        light->area.adaptive = read_adaptive(p);
         return true;
     case KW_JITTER:
         parse_next(p);
@@ -118,7 +125,7 @@ static void check_area(Parser *p, Span span, AreaLight *area)
         parse_warn(p, WARN_VALUE, span, "orient wants circular: it is set");
         area->is_circular = true;
     }
-    if (area->size1 && area->is_circular && (area->size1 < 2 || area->size2 < 2))
+    if (area->is_circular && (area->size1 < 2 || area->size2 < 2))
         parse_fail(p, span, "a circular area_light wants at least 2 lamps along each axis");
 }
 
