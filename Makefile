@@ -117,6 +117,13 @@ $(B)/%.o: %.c
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CC) $(ALLCFLAGS) -MMD -MP -c -o $@ $<
 
+# OpenColorIO's configuration is compiled in, as a string literal.
+$(B)/src/image/ocio.o: $(B)/gen/pms_ocio.inc
+$(B)/src/image/ocio.o: ALLCXXFLAGS += -I$(B)/gen
+$(B)/gen/pms_ocio.inc: stdlib/pms.ocio
+	$(Q)mkdir -p $(@D)
+	$(Q)(printf 'R"ocio('; cat $<; printf ')ocio"\n') > $@
+
 $(B)/%.o: %.cpp
 	@echo "  c++     $<"
 	$(Q)mkdir -p $(@D)

@@ -29,28 +29,41 @@ static Status read_all(Diag *diag, int fd, const char *path, char *into, size_t 
     return OK;
 }
 
-Status file_read(Diag *diag, const char *path, size_t limit_bytes, Arena *arena,
-                 const char **text, size_t *size)
+Status file_open(Diag *diag, const char *path, int *fd, size_t *size)
 {
-    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (fd < 0)
+    *fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (*fd < 0)
         return refuse(diag, "open", path, errno);
     struct stat info;
     Status status = OK;
-    char *buffer = NULL;
-    if (fstat(fd, &info) != 0)
+    if (fstat(*fd, &info) != 0)
         status = refuse(diag, "open", path, errno);
     else if (S_ISDIR(info.st_mode))
         status = diag_fail(diag, ERR_FILE, "'%s' is a directory, not a file", path);
     else if (!S_ISREG(info.st_mode))
         status = diag_fail(diag, ERR_FILE, "'%s' is not a regular file", path);
-    else if ((size_t)info.st_size > limit_bytes)
-        status = diag_fail(diag, ERR_FILE, "'%s' has %lld bytes, more than the limit of %zu", path,
-                           (long long)info.st_size, limit_bytes);
-    else if (!(buffer = arena_alloc(arena, (size_t)info.st_size + 1)))
+    if (status != OK)
+        close(*fd);
+    else
+        *size = (size_t)info.st_size;
+    return status;
+}
+
+Status file_read(Diag *diag, const char *path, size_t limit_bytes, Arena *arena,
+                 const char **text, size_t *size)
+{
+    int fd;
+    size_t wanted;
+    TRY(file_open(diag, path, &fd, &wanted));
+    Status status = OK;
+    char *buffer = NULL;
+    if (wanted > limit_bytes)
+        status = diag_fail(diag, ERR_FILE, "'%s' has %zu bytes, more than the limit of %zu", path,
+                           wanted, limit_bytes);
+    else if (!(buffer = arena_alloc(arena, wanted + 1)))
         status = diag_no_memory(diag, path);
     else
-        status = read_all(diag, fd, path, buffer, (size_t)info.st_size, size);
+        status = read_all(diag, fd, path, buffer, wanted, size);
     close(fd);
     *text = buffer;
     return status;

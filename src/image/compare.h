@@ -11,18 +11,30 @@ typedef struct CompareResult {
     double ssim;      /* mean structural similarity of luma, display-encoded; Wang et al. 2004 */
     double max_error; /* largest difference of a channel */
     double mean_a, mean_b;
+    size_t bad_a, bad_b; /* pixels with a NaN or infinity: left out of the sums, black in SSIM */
+    bool is_display;     /* what was compared: display values, or (both images linear) light */
 } CompareResult;
 
 #define COMPARE_REL_EPSILON 0.01
 
-/* Compare the beauty layers.  Linear images are brought to display encoding (sRGB curve) for
- * SSIM and when the other one is a PNG.  ERR_USAGE if sizes differ. */
+/* Compare the colours of the beauty layers as they look over black.
+ *
+ * Linear images are clipped and brought to display encoding (sRGB curve) for SSIM and when the
+ * other one is a PNG.  SSIM: Gaussian window of 11x11 with sigma 1.5, K1 .01, K2 .03, L 1, on
+ * luma (Rec.709 weights), windows that lie wholly inside the image; for images with a side
+ * under 11, windows are cut at the edge and all count.
+ * ERR_USAGE if sizes differ or an image has no colours.  O(pixels). */
 Status image_compare(Diag *diag, const Image *a, const Image *reference, CompareResult *out);
 
-/* Make the difference image |a-b| scaled by `gain`, as a linear RGB image. */
+/* Make the difference image |a-b| scaled by `gain`; is_display as in CompareResult.  Pixels
+ * that cannot be compared are magenta. */
 Status image_difference(Diag *diag, const Image *a, const Image *b, float gain, Image *out);
 
 /* Read an EXR or PNG by its content. */
 Status image_load(Diag *diag, const char *path, Image *out);
+
+/* Clip and encode the colours of the beauty layer with the sRGB curve, unless they are display
+ * values already. */
+void image_to_display(Image *image);
 
 #endif

@@ -7,21 +7,21 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+enum { IMAGE_SIDE_MAX = 65536, IMAGE_NAME_MAX = 64 };
+
 typedef struct ImageLayer {
-    char name[32];     /* "" for the beauty, else "direct", "N" ... */
-    char channels[8];  /* one letter each: "RGBA", "RGB", "Z", "XYZ" */
+    char name[IMAGE_NAME_MAX]; /* "" for the beauty, else "direct", "N" ... */
+    char channels[8];          /* one letter each: "RGBA", "RGB", "Z", "XYZ" */
     int channel_count;
-    float *pixels;     /* width * height * channel_count, top row first, interleaved */
+    float *pixels; /* width * height * channel_count, top row first, interleaved */
 } ImageLayer;
 
 typedef struct Image {
     int width, height;
     int layer_count;
     ImageLayer *layers;
-    bool is_display;   /* PNG: values are display encoded, not linear */
+    bool is_display; /* PNG: values are display encoded, not linear */
 } Image;
-
-enum { IMAGE_SIDE_MAX = 65536 };
 
 /* Make an image without layers.  width and height in [1, IMAGE_SIDE_MAX]. */
 void image_init(Image *image, int width, int height);
@@ -31,6 +31,9 @@ ImageLayer *image_add_layer(Image *image, const char *name, const char *channels
 
 /* Return the layer with this name, or NULL. */
 ImageLayer *image_find_layer(const Image *image, const char *name);
+
+/* Return the position of `letter` in the layer's channels, or -1. */
+int image_channel(const ImageLayer *layer, char letter);
 
 void image_done(Image *image);
 

@@ -12,8 +12,7 @@ typedef struct Ocio Ocio;
 
 /* Open a colour configuration.
  *
- * config  a file; NULL: $OCIO, or else pms's own (stdlib/pms.ocio beside the program or in the
- *         installed data folder).
+ * config  a file; NULL: $OCIO, or else pms's own (stdlib/pms.ocio, compiled in).
  * Fails with ERR_LIBRARY or ERR_FILE.  Free with ocio_free. */
 Status ocio_new(Diag *diag, const char *config, Ocio **out);
 void ocio_free(Ocio *ocio);

@@ -1,0 +1,224 @@
+/* Error metrics between two images.
+ *
+ * Both beauty layers are first brought to three planar channels in one encoding; everything
+ * else works on these.  SPDX-License-Identifier: Apache-2.0 */
+#include "image/compare.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "image/exr.h"
+#include "image/png_file.h"
+#include "image/ssim_int.h"
+#include "image/srgb.h"
+
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Colours of an image, three floats a pixel. */
+typedef struct Colours {
+    float *rgb;
+    bool is_display;
+} Colours;
+
+static const ImageLayer *beauty_of(const Image *image)
+{
+    const ImageLayer *layer = image_find_layer(image, "");
+    bool has_colour = layer && (image_channel(layer, 'Y') >= 0 ||
+                                (image_channel(layer, 'R') >= 0 && image_channel(layer, 'G') >= 0 &&
+                                 image_channel(layer, 'B') >= 0));
+    return has_colour ? layer : NULL;
+}
+
+static float clip(float v)
+{
+    return v < 0 ? 0 : v > 1 ? 1 : v; /* NaN stays */
+}
+
+static float encode(float v)
+{
+    return srgb_encode(clip(v));
+}
+
+/* A display image's colours are not premultiplied: lay them over black, in light. */
+static float over_black(float v, float alpha)
+{
+    return alpha >= 1 ? v : srgb_encode(srgb_decode(v) * alpha);
+}
+
+/* Copy the colours of an image; grey images become colours. */
+static Status extract(Diag *diag, const Image *image, bool to_display, Colours *out)
+{
+    const ImageLayer *layer = beauty_of(image);
+    if (!layer)
+        return diag_fail(diag, ERR_USAGE, "an image without R, G and B cannot be compared");
+    size_t count = (size_t)image->width * (size_t)image->height;
+    out->is_display = image->is_display || to_display;
+    out->rgb = mem_array(count, 3 * sizeof *out->rgb);
+    if (!out->rgb)
+        return diag_no_memory(diag, "a comparison");
+    bool is_grey = image_channel(layer, 'R') < 0;
+    int alpha = image->is_display ? image_channel(layer, 'A') : -1;
+    for (int c = 0; c < 3; c++) {
+        const float *from = layer->pixels + image_channel(layer, is_grey ? 'Y' : "RGB"[c]);
+        const float *a = alpha < 0 ? NULL : layer->pixels + alpha;
+        for (size_t i = 0; i < count; i++) {
+            size_t at = i * (size_t)layer->channel_count;
+            float v = a ? over_black(from[at], a[at]) : from[at];
+            out->rgb[3 * i + (size_t)c] = to_display && !image->is_display ? encode(v) : v;
+        }
+    }
+    return OK;
+}
+
+static Status extract_both(Diag *diag, const Image *a, const Image *b, Colours *ca, Colours *cb)
+{
+    *ca = *cb = (Colours){0};
+    if (a->width != b->width || a->height != b->height)
+        return diag_fail(diag, ERR_USAGE, "the images differ in size: %dx%d and %dx%d", a->width,
+                         a->height, b->width, b->height);
+    bool to_display = a->is_display || b->is_display;
+    TRY(extract(diag, a, to_display, ca));
+    return extract(diag, b, to_display, cb);
+}
+
+static bool is_finite_pixel(const float *rgb)
+{
+    return isfinite(rgb[0]) && isfinite(rgb[1]) && isfinite(rgb[2]);
+}
+
+static void sum_errors(const float *a, const float *b, size_t pixels, CompareResult *out)
+{
+    double squares = 0, relative = 0, mean_a = 0, mean_b = 0;
+    size_t used = 0;
+    for (size_t i = 0; i < pixels; i++, a += 3, b += 3) {
+        bool is_good_a = is_finite_pixel(a), is_good_b = is_finite_pixel(b);
+        out->bad_a += !is_good_a;
+        out->bad_b += !is_good_b;
+        if (!is_good_a || !is_good_b)
+            continue;
+        used += 3;
+        for (int c = 0; c < 3; c++) {
+            double va = a[c], vb = b[c], d = va - vb;
+            squares += d * d;
+            relative += d * d / (vb * vb + COMPARE_REL_EPSILON);
+            out->max_error = fmax(out->max_error, fabs(d));
+            mean_a += va;
+            mean_b += vb;
+        }
+    }
+    double scale = used ? 1 / (double)used : 0;
+    out->rmse = sqrt(squares * scale);
+    out->rel_mse = relative * scale;
+    out->psnr = squares > 0 ? -10 * log10(squares * scale) : INFINITY;
+    out->mean_a = mean_a * scale;
+    out->mean_b = mean_b * scale;
+}
+
+/* Return the display-encoded luma of each pixel; what cannot be compared is black in both. */
+static void luma_of(const Colours *colours, const Colours *other, size_t pixels, float *luma)
+{
+    static const float weight[3] = {0.2126f, 0.7152f, 0.0722f};
+    for (size_t i = 0; i < pixels; i++) {
+        const float *p = colours->rgb + 3 * i;
+        luma[i] = 0;
+        if (!is_finite_pixel(p) || !is_finite_pixel(other->rgb + 3 * i))
+            continue;
+        for (int c = 0; c < 3; c++)
+            luma[i] += weight[c] * (colours->is_display ? clip(p[c]) : encode(p[c]));
+    }
+}
+
+static Status find_ssim(Diag *diag, const Colours *a, const Colours *b, int width, int height,
+                        double *ssim)
+{
+    size_t pixels = (size_t)width * (size_t)height;
+    float *luma = mem_array(pixels, 2 * sizeof *luma);
+    if (!luma)
+        return diag_no_memory(diag, "a comparison");
+    luma_of(a, b, pixels, luma);
+    luma_of(b, a, pixels, luma + pixels);
+    bool is_done = ssim_mean(luma, luma + pixels, width, height, ssim);
+    mem_free(luma);
+    return is_done ? OK : diag_no_memory(diag, "a comparison");
+}
+
+Status image_compare(Diag *diag, const Image *a, const Image *reference, CompareResult *out)
+{
+    Colours ca, cb;
+    *out = (CompareResult){0};
+    Status status = extract_both(diag, a, reference, &ca, &cb);
+    if (status == OK) {
+        out->is_display = ca.is_display;
+        sum_errors(ca.rgb, cb.rgb, (size_t)a->width * (size_t)a->height, out);
+        status = find_ssim(diag, &ca, &cb, a->width, a->height, &out->ssim);
+    }
+    mem_free(ca.rgb);
+    mem_free(cb.rgb);
+    return status;
+}
+
+static void subtract(const float *a, const float *b, size_t pixels, float gain, float *out)
+{
+    static const float bad[3] = {1, 0, 1};
+    for (size_t i = 0; i < pixels; i++, a += 3, b += 3, out += 3) {
+        bool is_good = is_finite_pixel(a) && is_finite_pixel(b);
+        for (int c = 0; c < 3; c++)
+            out[c] = is_good ? gain * fabsf(a[c] - b[c]) : bad[c];
+    }
+}
+
+Status image_difference(Diag *diag, const Image *a, const Image *b, float gain, Image *out)
+{
+    Colours ca, cb;
+    *out = (Image){0};
+    Status status = extract_both(diag, a, b, &ca, &cb);
+    if (status == OK) {
+        image_init(out, a->width, a->height);
+        out->is_display = ca.is_display;
+        ImageLayer *layer = image_add_layer(out, "", "RGB");
+        if (layer)
+            subtract(ca.rgb, cb.rgb, (size_t)a->width * (size_t)a->height, gain, layer->pixels);
+        else
+            status = diag_no_memory(diag, "a difference image");
+    }
+    mem_free(ca.rgb);
+    mem_free(cb.rgb);
+    if (status != OK)
+        image_done(out);
+    return status;
+}
+
+Status image_load(Diag *diag, const char *path, Image *out)
+{
+    static const unsigned char exr_magic[4] = {0x76, 0x2f, 0x31, 0x01};
+    static const unsigned char png_magic[4] = {0x89, 'P', 'N', 'G'};
+    unsigned char start[4] = {0};
+    int fd;
+    size_t size;
+    *out = (Image){0};
+    TRY(file_open(diag, path, &fd, &size));
+    ssize_t got = read(fd, start, sizeof start);
+    close(fd);
+    if (got == sizeof start && memcmp(start, exr_magic, sizeof start) == 0)
+        return exr_read(diag, path, out);
+    if (got == sizeof start && memcmp(start, png_magic, sizeof start) == 0)
+        return png_read(diag, path, out);
+    return diag_fail(diag, ERR_FILE, "cannot read '%s': neither an OpenEXR nor a PNG file", path);
+}
+
+void image_to_display(Image *image)
+{
+    ImageLayer *layer = image_find_layer(image, "");
+    if (image->is_display || !layer)
+        return;
+    size_t count = (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < count; i++) {
+        float *pixel = layer->pixels + i * (size_t)layer->channel_count;
+        for (int c = 0; c < layer->channel_count; c++) {
+            if (layer->channels[c] != 'A')
+                pixel[c] = encode(pixel[c]);
+        }
+    }
+    image->is_display = true;
+}

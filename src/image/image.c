@@ -1,0 +1,61 @@
+/* Pixel buffers.  SPDX-License-Identifier: Apache-2.0 */
+#include "image/image.h"
+
+#include "base/mem.h"
+
+#include <assert.h>
+#include <string.h>
+
+void image_init(Image *image, int width, int height)
+{
+    assert(width >= 1 && width <= IMAGE_SIDE_MAX && height >= 1 && height <= IMAGE_SIDE_MAX);
+    *image = (Image){.width = width, .height = height};
+}
+
+ImageLayer *image_add_layer(Image *image, const char *name, const char *channels)
+{
+    size_t name_length = strlen(name);
+    size_t channel_count = strlen(channels);
+    assert(name_length < IMAGE_NAME_MAX);
+    assert(channel_count >= 1 && channel_count < sizeof image->layers->channels);
+
+    size_t count = (size_t)image->layer_count;
+    ImageLayer *grown = mem_resize(image->layers, (count + 1) * sizeof *grown);
+    if (!grown)
+        return NULL;
+    image->layers = grown;
+    float *pixels =
+        mem_array((size_t)image->width * (size_t)image->height, channel_count * sizeof *pixels);
+    if (!pixels)
+        return NULL;
+    ImageLayer *layer = &image->layers[count];
+    *layer = (ImageLayer){.channel_count = (int)channel_count, .pixels = pixels};
+    memcpy(layer->name, name, name_length + 1);
+    memcpy(layer->channels, channels, channel_count + 1);
+    image->layer_count++;
+    return layer;
+}
+
+ImageLayer *image_find_layer(const Image *image, const char *name)
+{
+    for (int i = 0; i < image->layer_count; i++) {
+        if (strcmp(image->layers[i].name, name) == 0)
+            return &image->layers[i];
+    }
+    return NULL;
+}
+
+int image_channel(const ImageLayer *layer, char letter)
+{
+    const char *found = letter ? strchr(layer->channels, letter) : NULL;
+    return found ? (int)(found - layer->channels) : -1;
+}
+
+void image_done(Image *image)
+{
+    for (int i = 0; i < image->layer_count; i++)
+        mem_free(image->layers[i].pixels);
+    mem_free(image->layers);
+    image->layers = NULL;
+    image->layer_count = 0;
+}
