@@ -29,7 +29,7 @@ static Status read_all(Diag *diag, int fd, const char *path, char *into, size_t 
     return OK;
 }
 
-Status file_open(Diag *diag, const char *path, int *fd, size_t *size)
+Status file_open_input(Diag *diag, const char *path, int *fd, size_t *size)
 {
     *fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (*fd < 0)
@@ -54,7 +54,7 @@ Status file_read(Diag *diag, const char *path, size_t limit_bytes, Arena *arena,
 {
     int fd;
     size_t wanted;
-    TRY(file_open(diag, path, &fd, &wanted));
+    TRY(file_open_input(diag, path, &fd, &wanted));
     Status status = OK;
     char *buffer = NULL;
     if (wanted > limit_bytes)

@@ -19,7 +19,7 @@ Status file_read(Diag *diag, const char *path, size_t limit_bytes, Arena *arena,
 
 /* Open the regular file at `path` for reading into `*fd` (yours to close) and tell its size.
  * Fails with ERR_FILE: missing, unreadable, a directory, a pipe or device. */
-Status file_open(Diag *diag, const char *path, int *fd, size_t *size);
+Status file_open_input(Diag *diag, const char *path, int *fd, size_t *size);
 
 /* Return true if `path` names something that can be opened as a regular file. */
 bool file_exists(const char *path);

@@ -197,7 +197,7 @@ Status image_load(Diag *diag, const char *path, Image *out)
     int fd;
     size_t size;
     *out = (Image){0};
-    TRY(file_open(diag, path, &fd, &size));
+    TRY(file_open_input(diag, path, &fd, &size));
     ssize_t got = read(fd, start, sizeof start);
     close(fd);
     if (got == sizeof start && memcmp(start, exr_magic, sizeof start) == 0)

@@ -322,7 +322,7 @@ Status exr_read(Diag *diag, const char *path, Image *out)
 {
     *out = (Image){0};
     ExrReader r = {.diag = diag, .path = path, .image = out};
-    TRY(file_open(diag, path, &r.stream.fd, &r.file_bytes));
+    TRY(file_open_input(diag, path, &r.stream.fd, &r.file_bytes));
     Status status = read_stream(&r);
     close(r.stream.fd);
     if (status != OK)

@@ -283,7 +283,7 @@ Status png_read(Diag *diag, const char *path, Image *out)
     *out = (Image){0};
     PngJob job = {.diag = diag, .path = path};
     int fd;
-    TRY(file_open(diag, path, &fd, &job.file_bytes));
+    TRY(file_open_input(diag, path, &fd, &job.file_bytes));
     job.file = fdopen(fd, "rb");
     if (!job.file) {
         close(fd);
