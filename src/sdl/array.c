@@ -9,7 +9,7 @@ static int take_subscript(Parser *p, const Token *name, int size)
 {
     parse_expect(p, TOKEN_LBRACKET, "the array");
     Span begin = parse_peek(p)->span;
-    double index = trunc(parse_float(p) + SDL_EPSILON);
+    double index = floor(parse_float(p) + SDL_EPSILON);
     if (!(index >= 0 && index < size))
         parse_fail(p, span_join(begin, p->last), "subscript %g is outside `%s`, which has 0 to %d",
                    index, name->text, size - 1);

@@ -198,8 +198,10 @@ static void read_assumed_gamma(Parser *p, SceneSettings *settings)
 static void read_charset(Parser *p)
 {
     parse_next(p);
-    if (!parse_accept(p, KW_ASCII) && !parse_accept(p, KW_UTF8) && !parse_accept(p, KW_SYS))
+    bool is_utf8 = parse_accept(p, KW_UTF8) || parse_accept(p, KW_SYS);
+    if (!is_utf8 && !parse_accept(p, KW_ASCII))
         parse_fail_here(p, "after charset, which wants ascii, utf8 or sys");
+    parse_set_utf8(p, is_utf8);
 }
 
 /* Settings of effects that are asked for elsewhere and fail there: checked, then dropped. */
