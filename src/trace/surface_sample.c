@@ -169,6 +169,17 @@ static void sample_transmission(Sampling *s)
             rgb_mul(out->through, interior_fade(s->hit->surface->interior, s->hit->t, false));
 }
 
+/* The interpolated normal on the side of ng.  Near a silhouette it may look away from the
+ * viewer: then it is bent until it just does not, so that no dark seam appears. */
+static V3 shading_normal(V3 ns, V3 ng, V3 wo)
+{
+    V3 n = v3_dot(ns, ng) < 0 ? v3_neg(ns) : ns;
+    double away = v3_dot(n, wo);
+    if (away < 0)
+        n = v3_unit(v3_mad(n, -away, wo));
+    return v3_len2(n) > 0 ? n : ng;
+}
+
 void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit, const Interiors *interiors,
                     SurfaceSample *out)
 {
@@ -183,7 +194,7 @@ void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit, const I
     out->layer_count = 0;
 
     Sampling s = {.tracer = tracer, .ray = ray, .hit = hit, .interiors = interiors, .out = out};
-    s.n = v3_dot(hit->point.ns, out->ng) < 0 ? v3_neg(hit->point.ns) : hit->point.ns;
+    s.n = shading_normal(hit->point.ns, out->ng, out->wo);
     s.cosine = fmin(1, fmax(0, v3_dot(s.n, out->wo)));
 
     TextureChoice choice;

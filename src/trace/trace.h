@@ -81,7 +81,7 @@ typedef struct SurfaceLayer {
     float opacity; /* 1 - filter - transmit, may be negative */
     Rgb above;     /* what reaches this layer through the ones above */
     const Finish *finish;
-    V3 n;           /* unit, faces the viewer */
+    V3 n; /* unit, on the side of ng, faces the viewer */
     Rgb reflect;    /* reflectivity at this angle, metallic, fresnel and irid applied; not
                        filtered by the layers above; the reflected colour is to be raised to
                        1/finish->reflection_exponent first */
