@@ -101,11 +101,11 @@ static const Shape *leaf_around(const Shape *shape, V3 p)
 }
 
 /* Volumes order the list: what is inside is smaller. */
-static double volume(Bound b)
+static double volume(const Object *object)
 {
-    if (!bound_is_finite(b))
+    if (!bound_is_finite(object->bound) || object->shape->is_inverted)
         return INFINITY;
-    V3 size = v3_sub(b.hi, b.lo);
+    V3 size = v3_sub(object->bound.hi, object->bound.lo);
     return size.x * size.y * size.z;
 }
 
@@ -115,17 +115,13 @@ void interiors_at(const Tracer *tracer, V3 p, Interiors *out)
     out->count = 0;
     for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
         const Object *object = &tracer->scene->objects[i];
-        Bound b = object->bound;
-        bool is_near = p.x >= b.lo.x && p.y >= b.lo.y && p.z >= b.lo.z && p.x <= b.hi.x &&
-                       p.y <= b.hi.y && p.z <= b.hi.z;
-        if (!is_near || !shape_is_solid(object->shape) || !shape_is_inside(object->shape, p))
+        if (out->count == INTERIORS_MAX || !shape_is_solid(object->shape) ||
+            !shape_is_inside(object->shape, p))
             continue;
-        double size = volume(b);
+        double size = volume(object);
         int at = out->count;
         while (at > 0 && volumes[at - 1] < size)
             at--;
-        if (out->count == INTERIORS_MAX)
-            continue;
         for (int k = out->count++; k > at; k--) {
             volumes[k] = volumes[k - 1];
             out->in[k] = out->in[k - 1];

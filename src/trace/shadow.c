@@ -48,7 +48,9 @@ static bool note_filter(ShadowQuery *query, uint32_t object)
 static bool may_block(const ShadowQuery *query, uint32_t object)
 {
     ShadowKind kind = query->tracer->objects[object].shadow;
-    return kind == SHADOW_BLOCK || (kind == SHADOW_TARGET && query->blocks_targets);
+    if (kind != SHADOW_TARGET)
+        return kind == SHADOW_BLOCK;
+    return query->blocks_targets && !(query->light && query->light->photon_refraction == TRI_OFF);
 }
 
 /* Returns true if the object blocks all light; notes it if it may filter. */

@@ -138,18 +138,19 @@ static Rgb look_along(World *w, const Ray *ray, RayKind kind, const Interiors *i
         const SurfaceLayer *layer = &s.layers[i];
         Rgb own = rgb_mul(layer->color, layer->finish->ambient);
         sum = rgb_add(sum, rgb_mul(layer->above, rgb_scale(own, layer->opacity)));
-        float next = weight * rgb_max_abs(layer->reflect);
+        float share = weight * rgb_max_abs(layer->reflect);
         if (rgb_is_black(layer->reflect) || level >= settings->max_trace_level ||
-            (double)next < settings->adc_bailout)
+            (double)share < settings->adc_bailout)
             continue;
         Ray mirrored = trace_ray_from(&s.at, layer->reflect_dir);
-        Rgb seen = look_along(w, &mirrored, RAY_REFLECTED, inside, level, next, false);
+        Rgb seen = look_along(w, &mirrored, RAY_REFLECTED, inside, level, share, false);
         sum = rgb_add(sum, rgb_mul(layer->reflect, seen));
     }
-    if (s.has_transmission && level < settings->max_trace_level) {
+    float next = weight * (s.is_total_reflection ? 1 : rgb_max_abs(s.filter));
+    if (s.has_transmission && level < settings->max_trace_level &&
+        (double)next >= settings->adc_bailout) {
         Ray through = trace_ray_from(&s.at, s.transmit_dir);
-        Rgb seen = look_along(w, &through, kind, &s.inside_after, level,
-                              weight * rgb_max_abs(s.through), s.is_straight);
+        Rgb seen = look_along(w, &through, kind, &s.inside_after, level, next, s.is_straight);
         sum = rgb_add(sum, rgb_mul(s.through, seen));
     }
     return sum;
@@ -168,8 +169,8 @@ static void check_rgb(Rgb c, double r, double g, double b)
 {
     if (!(fabs((double)c.r - r) < TOLERANCE && fabs((double)c.g - g) < TOLERANCE &&
           fabs((double)c.b - b) < TOLERANCE))
-        fail_msg("got %.5f %.5f %.5f, wanted %.5f %.5f %.5f", (double)c.r, (double)c.g,
-                 (double)c.b, r, g, b);
+        fail_msg("got %.5f %.5f %.5f, wanted %.5f %.5f %.5f", (double)c.r, (double)c.g, (double)c.b,
+                 r, g, b);
 }
 
 /* --- reflection ---------------------------------------------------------------------------- */
@@ -250,8 +251,8 @@ static void test_mirror_under_a_layer(void **state)
     const Texture *bottom = flat(&w, (Color5){0, 0, 0, 0, 0}, &mirror);
     const Texture *half = flat(&w, (Color5){0, 0, 0.5f, 0, 0.5f}, &glow);
     const Texture *opaque = flat(&w, (Color5){0, 0, 0.5f, 0, 0}, &glow);
-    Surface *surface = world_add(&w, box(&w, v3(-1, -1, -1), v3(1, 1, 1)),
-                                 two_layers(&w, bottom, half), &air);
+    Surface *surface =
+        world_add(&w, box(&w, v3(-1, -1, -1), v3(1, 1, 1)), two_layers(&w, bottom, half), &air);
     world_ready(&w);
     check_rgb(look(&w), 0.5, 0.5, 0.75);
     surface->texture = two_layers(&w, bottom, opaque);
@@ -484,13 +485,15 @@ static void test_mesh_textures(void **state)
     Arena *arena = w.scene.arena;
     V3 vertices[4] = {{-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}, {1, 1, 0}};
     uint32_t corners[6] = {0, 1, 2, 2, 1, 3}, textures[6] = {0, 0, 1, MESH_NO_TEXTURE, 0, 0};
-    MeshData mesh = {.vertices = vertices, .vertex_count = 4, .corners = corners,
-                     .triangle_count = 2, .textures = textures};
+    MeshData mesh = {.vertices = vertices,
+                     .vertex_count = 4,
+                     .corners = corners,
+                     .triangle_count = 2,
+                     .textures = textures};
     textures[3] = textures[4] = textures[5] = MESH_NO_TEXTURE;
     assert_int_equal(mesh_index(&w.diag, &mesh, 1), OK);
     const Texture *list[2] = {emitter(&w, 1, 0, 0), emitter(&w, 0, 1, 0)};
-    Surface *surface =
-        world_add(&w, shape_mesh(arena, &mesh), emitter(&w, 0, 0, 1), &air);
+    Surface *surface = world_add(&w, shape_mesh(arena, &mesh), emitter(&w, 0, 0, 1), &air);
     surface->mesh_textures = list;
     world_ready(&w);
     /* barycentrics of corner 2, the green one: (y+1)/2 */
@@ -706,7 +709,8 @@ static void test_opaque_among_filters(void **state)
     assert_true(shadow(&w, false).r == 0x1p-10f);
     trace_thread_done(&w.thread);
     tracer_free(w.tracer);
-    Surface *wall = world_add(&w, box(&w, v3(-2, -2, -15), v3(2, 2, -14)), emitter(&w, 1, 1, 1), &air);
+    Surface *wall =
+        world_add(&w, box(&w, v3(-2, -2, -15), v3(2, 2, -14)), emitter(&w, 1, 1, 1), &air);
     world_ready(&w);
     assert_true(rgb_is_black(shadow(&w, false)));
     assert_int_equal(w.thread.blockers[0], 5);
@@ -726,8 +730,8 @@ static void test_photon_targets_block(void **state)
     Surface *glass = world_add(&w, box(&w, v3(-2, -2, 0), v3(2, 2, 1)), clear(&w), &air);
     glass->is_target = true;
     glass->photons.refraction = TRI_ON;
-    world_add(&w, box(&w, v3(-2, -2, -4), v3(2, 2, -3)), flat(&w, (Color5){1, 1, 1, 0, 0.5f}, &dull),
-              &air);
+    world_add(&w, box(&w, v3(-2, -2, -4), v3(2, 2, -3)),
+              flat(&w, (Color5){1, 1, 1, 0, 0.5f}, &dull), &air);
     world_ready(&w);
     assert_true(rgb_is_black(shadow(&w, true)));
     assert_true(shadow(&w, false).r == 0.25f); /* the remembered blocker lets this light pass */
