@@ -6,7 +6,8 @@
  * leaving it meets none of them again.  SPDX-License-Identifier: Apache-2.0 */
 #include "trace/trace_int.h"
 
-enum { TIES_MAX = 4 }; /* more objects than this in one place: the first ones stay */
+/* More objects than this in one place: the first ones stay. */
+enum { TIES_MAX = 1 + HIT_TIES_MAX };
 
 /* Two hits count as one place only if closer than this part of t, whatever their errors. */
 #define TIE_CAP 0x1p-30
@@ -85,26 +86,34 @@ static bool test_item(void *ctx, uint32_t item, Ray *ray)
     return false;
 }
 
+/* Hand on the other surfaces in the place, and let its error cover them. */
+static void fill_ties(const ClosestQuery *query, Hit *out)
+{
+    const Crossing *first = &query->found[0].crossing;
+    out->tie_count = query->count - 1;
+    for (int i = 0; i < out->tie_count; i++) {
+        const Candidate *other = &query->found[i + 1];
+        double spread = fabs(other->crossing.t - first->t) + other->error + query->found[0].error;
+        out->point.p_error = fmax(out->point.p_error, spread);
+        out->ties[i] = (HitTie){other->crossing, other->object};
+    }
+}
+
 static void fill_hit(const ClosestQuery *query, const Ray *ray, Hit *out)
 {
-    const Candidate *first = &query->found[0];
-    const Crossing *crossing = &first->crossing;
+    const Crossing *crossing = &query->found[0].crossing;
     const Scene *scene = query->thread->tracer->scene;
     shape_point(crossing, ray, &out->point);
-    for (int i = 1; i < query->count; i++) {
-        const Candidate *other = &query->found[i];
-        double spread = fabs(other->crossing.t - crossing->t) + other->crossing.t_error;
-        out->point.p_error = fmax(out->point.p_error, spread + crossing->t_error);
-    }
     out->t = crossing->t;
     out->leaf = crossing->leaf;
     out->surface = &scene->surfaces[crossing->leaf->surface];
-    out->object = &scene->objects[first->object];
+    out->object = &scene->objects[query->found[0].object];
     out->part = crossing->part;
     out->u = crossing->u;
     out->v = crossing->v;
-    out->is_entering =
-        crossing->leaf_change != 0 ? crossing->leaf_change > 0 : v3_dot(out->point.ng, ray->d) < 0;
+    out->is_entering = crossing_is_entering(crossing, out->point.ng, ray->d);
+    out->is_wall = crossing->leaf_change == 0;
+    fill_ties(query, out);
 }
 
 bool trace_closest(TraceThread *thread, const Ray *ray, RayKind kind, Hit *out)
@@ -130,9 +139,8 @@ bool trace_closest(TraceThread *thread, const Ray *ray, RayKind kind, Hit *out)
     return true;
 }
 
-/* The index and the shapes compute with errors of the same size as the point's own, so four of
- * them keep the surface behind the new ray. */
-#define PUSH 4.0
+/* One error keeps the surface behind the new ray; the other is for rounding the sum. */
+#define PUSH 2.0
 
 Ray trace_ray_from(const ShapePoint *point, V3 d)
 {

@@ -21,9 +21,9 @@ static int entry_of(const Interiors *list, uint32_t object, const Interior *inte
     return found;
 }
 
-static double innermost_ior(const Interiors *list, int count)
+static double innermost_ior(const Interiors *list)
 {
-    return count > 0 ? list->in[count - 1]->ior : 1;
+    return list->count > 0 ? list->in[list->count - 1]->ior : 1;
 }
 
 /* When the list is full the outermost entry goes. */
@@ -59,27 +59,33 @@ static void copy(Interiors *to, const Interiors *from)
     }
 }
 
-InteriorStep interiors_step(const Tracer *tracer, const Hit *hit, const Interiors *before,
-                            Interiors *after)
+InteriorStep interiors_pass(const Tracer *tracer, const Passage *passages, int count,
+                            const Interiors *before, Interiors *after)
 {
-    const Interior *interior = hit->surface->interior;
-    uint32_t object = (uint32_t)(hit->object - tracer->scene->objects);
-    int entry = before->count > 0 ? entry_of(before, object, interior) : -1;
-    bool is_entering = tracer->objects[object].is_closed ? hit->is_entering : entry < 0;
-    if (after)
-        copy(after, before);
-    if (is_entering) {
-        if (after)
-            push(after, interior, object);
-        return (InteriorStep){false, innermost_ior(before, before->count), interior->ior};
+    InteriorStep step = {.ior_from = innermost_ior(before)};
+    bool is_entered[PASSAGES_MAX];
+    copy(after, before);
+    for (int i = 0; i < count; i++) {
+        const Passage *passage = &passages[i];
+        bool is_closed = tracer->objects[passage->object].is_closed;
+        is_entered[i] = false;
+        if (is_closed && passage->is_wall)
+            continue;
+        int entry = entry_of(after, passage->object, passage->interior);
+        is_entered[i] = is_closed ? passage->is_entering : entry < 0;
+        if (is_entered[i])
+            continue;
+        if (entry >= 0)
+            drop(after, entry);
+        else
+            step.ior_from = passage->interior->ior;
+        step.left[step.left_count++] = passage->interior;
     }
-    if (entry < 0)
-        return (InteriorStep){true, interior->ior, innermost_ior(before, before->count)};
-    if (after)
-        drop(after, entry);
-    if (entry < before->count - 1)
-        return (InteriorStep){true, interior->ior, interior->ior};
-    return (InteriorStep){true, interior->ior, innermost_ior(before, entry)};
+    for (int i = 0; i < count; i++)
+        if (is_entered[i])
+            push(after, passages[i].interior, passages[i].object);
+    step.ior_to = innermost_ior(after);
+    return step;
 }
 
 /* Find the leaf that lends its interior to a point inside a shape: the first child that holds

@@ -17,18 +17,32 @@ typedef struct Sampling {
     SurfaceSample *out;
     V3 n;              /* shading normal, on the side of ng */
     double cosine;     /* of n and wo */
-    InteriorStep step; /* set if has_step */
+    InteriorStep step; /* set, with out->inside_after, if has_step */
     bool has_step;
     V3 mirror; /* direction of reflection, set if has_mirror */
     bool has_mirror;
 } Sampling;
 
+/* Pass the hit's surface and those tied to it. */
 static const InteriorStep *step_of(Sampling *s)
 {
-    if (!s->has_step) {
-        s->step = interiors_step(s->tracer, s->hit, s->interiors, NULL);
-        s->has_step = true;
+    if (s->has_step)
+        return &s->step;
+    const Hit *hit = s->hit;
+    const Scene *scene = s->tracer->scene;
+    Passage passages[PASSAGES_MAX] = {{(uint32_t)(hit->object - scene->objects),
+                                       hit->surface->interior, hit->is_entering, hit->is_wall}};
+    for (int i = 0; i < hit->tie_count; i++) {
+        const Crossing *crossing = &hit->ties[i].crossing;
+        ShapePoint point;
+        shape_point(crossing, s->ray, &point);
+        passages[i + 1] = (Passage){
+            hit->ties[i].object, scene->surfaces[crossing->leaf->surface].interior,
+            crossing_is_entering(crossing, point.ng, s->ray->d), crossing->leaf_change == 0};
     }
+    s->step = interiors_pass(s->tracer, passages, 1 + hit->tie_count, s->interiors,
+                             &s->out->inside_after);
+    s->has_step = true;
     return &s->step;
 }
 
@@ -99,12 +113,12 @@ static void sample_reflection(Sampling *s, SurfaceLayer *layer, float weight, Rg
     layer->reflect = rgb_scale(r, weight);
 }
 
-/* Append the layers of one texture; returns what passes them. */
-static Rgb sample_texture(Sampling *s, const Texture *texture, float weight)
+/* Append the layers of one texture, seen through `above`; returns what passes them too. */
+static Rgb sample_texture(Sampling *s, const Texture *texture, float weight, Rgb above)
 {
     SurfaceSample *out = s->out;
     float bailout = (float)out->settings->adc_bailout;
-    Rgb filter = RGB_WHITE;
+    Rgb filter = above;
     for (int i = texture->layer_count - 1; i >= 0 && out->layer_count < SURFACE_LAYERS_MAX; i--) {
         if (!(fabsf(rgb_grey(filter)) > bailout))
             break;
@@ -119,6 +133,55 @@ static Rgb sample_texture(Sampling *s, const Texture *texture, float weight)
         sample_reflection(s, layer, weight, &filter);
     }
     return rgb_scale(filter, weight);
+}
+
+/* The interpolated normal on the side of ng.  Near a silhouette it may look away from the
+ * viewer: then it is bent until it just does not, so that no dark seam appears. */
+static V3 shading_normal(V3 ns, V3 ng, V3 wo)
+{
+    V3 n = v3_dot(ns, ng) < 0 ? v3_neg(ns) : ns;
+    double away = v3_dot(n, wo);
+    if (away < 0)
+        n = v3_unit(v3_mad(n, -away, wo));
+    return v3_len2(n) > 0 ? n : ng;
+}
+
+/* Take the normals of a surface for the steps that follow; returns whether it is met from its
+ * inside. */
+static bool set_normals(Sampling *s, const ShapePoint *point)
+{
+    bool is_inside = v3_dot(point->ng, s->ray->d) > 0;
+    s->n = shading_normal(point->ns, is_inside ? v3_neg(point->ng) : point->ng, s->out->wo);
+    s->cosine = fmin(1, fmax(0, v3_dot(s->n, s->out->wo)));
+    s->has_mirror = false;
+    return is_inside;
+}
+
+/* Append the layers of one surface below those there are. */
+static void sample_surface(Sampling *s, const TextureChoice *choice)
+{
+    Rgb sum = RGB_BLACK, above = s->out->filter;
+    for (int i = 0; i < choice->count; i++)
+        sum = rgb_add(sum, sample_texture(s, choice->texture[i], choice->weight[i], above));
+    s->out->filter = sum;
+}
+
+/* Append the surfaces tied to the hit, as far as the ones above let them be seen. */
+static void sample_ties(Sampling *s)
+{
+    const Hit *hit = s->hit;
+    for (int i = 0; i < hit->tie_count && !rgb_is_black(s->out->filter); i++) {
+        const Crossing *crossing = &hit->ties[i].crossing;
+        const Surface *surface = &s->tracer->scene->surfaces[crossing->leaf->surface];
+        ShapePoint point;
+        TextureChoice choice;
+        shape_point(crossing, s->ray, &point);
+        bool is_inside = set_normals(s, &point);
+        texture_choose(surface, crossing->leaf, crossing->part, crossing->u, crossing->v, is_inside,
+                       &choice);
+        sample_surface(s, &choice);
+    }
+    set_normals(s, &hit->point);
 }
 
 /* Bend d at the normal n, which faces it; returns false for total reflection. */
@@ -147,9 +210,8 @@ static void sample_transmission(Sampling *s)
 {
     SurfaceSample *out = s->out;
     V3 d = s->ray->d;
-    s->step = interiors_step(s->tracer, s->hit, s->interiors, &out->inside_after);
-    double ratio = s->step.ior_from / s->step.ior_to;
-    out->is_total_reflection = false;
+    const InteriorStep *step = step_of(s);
+    double ratio = step->ior_from / step->ior_to;
     out->is_straight = fabs(ratio - 1) < EPS_LANGUAGE;
     if (out->is_straight) {
         out->transmit_dir = d;
@@ -164,44 +226,31 @@ static void sample_transmission(Sampling *s)
             set_total_reflection(s);
     }
     out->through = out->is_total_reflection ? RGB_WHITE : out->filter;
-    if (s->step.is_leaving)
-        out->through =
-            rgb_mul(out->through, interior_fade(s->hit->surface->interior, s->hit->t, false));
-}
-
-/* The interpolated normal on the side of ng.  Near a silhouette it may look away from the
- * viewer: then it is bent until it just does not, so that no dark seam appears. */
-static V3 shading_normal(V3 ns, V3 ng, V3 wo)
-{
-    V3 n = v3_dot(ns, ng) < 0 ? v3_neg(ns) : ns;
-    double away = v3_dot(n, wo);
-    if (away < 0)
-        n = v3_unit(v3_mad(n, -away, wo));
-    return v3_len2(n) > 0 ? n : ng;
+    for (int i = 0; i < step->left_count; i++)
+        out->through = rgb_mul(out->through, interior_fade(step->left[i], s->hit->t, false));
 }
 
 void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit, const Interiors *interiors,
                     SurfaceSample *out)
 {
     const Tracer *tracer = thread->tracer;
-    bool is_inside = v3_dot(hit->point.ng, ray->d) > 0;
+    Sampling s = {.tracer = tracer, .ray = ray, .hit = hit, .interiors = interiors, .out = out};
     out->at = hit->point;
     out->wo = v3_neg(ray->d);
+    bool is_inside = set_normals(&s, &hit->point);
     out->ng = is_inside ? v3_neg(hit->point.ng) : hit->point.ng;
     out->surface = hit->surface;
     out->is_entering = hit->is_entering;
     out->settings = &tracer->scene->settings;
     out->layer_count = 0;
-
-    Sampling s = {.tracer = tracer, .ray = ray, .hit = hit, .interiors = interiors, .out = out};
-    s.n = shading_normal(hit->point.ns, out->ng, out->wo);
-    s.cosine = fmin(1, fmax(0, v3_dot(s.n, out->wo)));
+    out->filter = RGB_WHITE;
+    out->is_total_reflection = false;
 
     TextureChoice choice;
     texture_choose(hit->surface, hit->leaf, hit->part, hit->u, hit->v, is_inside, &choice);
-    out->filter = RGB_BLACK;
-    for (int i = 0; i < choice.count; i++)
-        out->filter = rgb_add(out->filter, sample_texture(&s, choice.texture[i], choice.weight[i]));
+    sample_surface(&s, &choice);
+    if (hit->tie_count > 0)
+        sample_ties(&s);
     out->has_transmission = fabsf(rgb_grey(out->filter)) > (float)out->settings->adc_bailout;
     if (out->has_transmission)
         sample_transmission(&s);

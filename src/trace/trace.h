@@ -42,15 +42,26 @@ typedef enum RayKind {
     RAY_KIND_COUNT
 } RayKind;
 
+/* Another surface in the place of a hit. */
+typedef struct HitTie {
+    Crossing crossing;
+    uint32_t object;
+} HitTie;
+
+enum { HIT_TIES_MAX = 3 };
+
 typedef struct Hit {
     double t;
-    ShapePoint point; /* p, ng, ns, uv; ng outward of the solid */
+    ShapePoint point; /* p, ng, ns; ng outward of the solid */
     const Surface *surface;
     const Object *object;
     const Shape *leaf;
     uint32_t part;    /* of the leaf */
     double u, v;      /* barycentrics of a triangle */
     bool is_entering; /* the ray goes into the leaf here (against ng) */
+    bool is_wall;     /* the object is on both sides: its members touch here */
+    int tie_count;    /* other objects with a surface in the same place, to within the errors */
+    HitTie ties[HIT_TIES_MAX]; /* in written order; first in it is this hit */
 } Hit;
 
 /* Find the nearest surface with ray->tmin < t < ray->tmax that rays of this kind see.
@@ -81,7 +92,7 @@ typedef struct SurfaceLayer {
     float opacity; /* 1 - filter - transmit, may be negative */
     Rgb above;     /* what reaches this layer through the ones above */
     const Finish *finish;
-    V3 n; /* unit, on the side of ng, faces the viewer */
+    V3 n;           /* unit, on the side of ng, faces the viewer */
     Rgb reflect;    /* reflectivity at this angle, metallic, fresnel and irid applied; not
                        filtered by the layers above; the reflected colour is to be raised to
                        1/finish->reflection_exponent first */
@@ -99,7 +110,7 @@ typedef struct SurfaceSample {
     SurfaceLayer layers[SURFACE_LAYERS_MAX]; /* top first */
     Rgb filter;                              /* what passes all layers: decides on bailing out */
     bool has_transmission;    /* filter is above adc_bailout and a ray should follow; what is
-                                 below is set only then */
+                                 below, but is_total_reflection, is set only then */
     bool is_total_reflection; /* then transmit_dir is the mirror direction */
     bool is_straight;         /* the ior does not change: the trace level does not count this (but
                                  level + 1 < max_trace_level must hold all the same) */
@@ -112,7 +123,8 @@ typedef struct SurfaceSample {
     const SceneSettings *settings;
 } SurfaceSample;
 
-/* Evaluate the surface at a hit for a ray inside `interiors`. */
+/* Evaluate the surface at a hit for a ray inside `interiors`.  Surfaces tied to the hit follow as
+ * layers below its own, so that glass shows the table it touches. */
 void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit, const Interiors *interiors,
                     SurfaceSample *out);
 

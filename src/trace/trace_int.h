@@ -55,14 +55,32 @@ Rgb metallic_tint(float metallic, double cosine, Rgb color);
 /* The factor of thin-film interference; both cosines are taken by magnitude. */
 Rgb irid_factor(const Finish *finish, Rgb wavelength, double cos_light, double cos_view);
 
-/* What becomes of the interiors at a surface. */
+/* One surface that a ray passes. */
+typedef struct Passage {
+    uint32_t object;
+    const Interior *interior;
+    bool is_entering; /* by the normal; ignored for objects that are not closed */
+    bool is_wall;
+} Passage;
+
+enum { PASSAGES_MAX = 1 + HIT_TIES_MAX };
+
+/* What becomes of the interiors of a ray. */
 typedef struct InteriorStep {
-    bool is_leaving;
     double ior_from, ior_to; /* equal: no bend */
+    int left_count;          /* interiors left */
+    const Interior *left[PASSAGES_MAX];
 } InteriorStep;
 
-/* Find how a ray in `before` passes the surface of a hit; `after` may be NULL. */
-InteriorStep interiors_step(const Tracer *tracer, const Hit *hit, const Interiors *before,
-                            Interiors *after);
+/* Pass surfaces in one place, those left before those entered; `after` is set to what a ray in
+ * `before` is in then. */
+InteriorStep interiors_pass(const Tracer *tracer, const Passage *passages, int count,
+                            const Interiors *before, Interiors *after);
+
+/* Return which way a crossing at a point leads. */
+static inline bool crossing_is_entering(const Crossing *crossing, V3 ng, V3 d)
+{
+    return crossing->leaf_change != 0 ? crossing->leaf_change > 0 : v3_dot(ng, d) < 0;
+}
 
 #endif

@@ -114,7 +114,6 @@ static const Texture *clear(World *w)
 
 static const Interior air = {.ior = 1};
 
-/* A prism along x, with its end faces parallel to the axes. */
 static Shape *box(World *w, V3 lo, V3 hi)
 {
     return shape_box(w->scene.arena, lo, hi);
@@ -438,6 +437,14 @@ static void test_mirror_inside_absorbs_on_the_way_out(void **state)
     world_done(&w);
 }
 
+/* Where a ray from <0,0,-1> along d meets the ruler. */
+static double ruler_x(World *w, V3 d)
+{
+    Ray ray = {{0, 0, -1}, d, 0, INFINITY};
+    Interiors inside = {.count = 0};
+    return 4 * (double)look_along(w, &ray, RAY_CAMERA, &inside, 0, 1, false).r - 2;
+}
+
 /* Union members that overlap: their inner walls bend nothing. */
 static void test_overlapping_glass_is_one_glass(void **state)
 {
@@ -450,17 +457,79 @@ static void test_overlapping_glass_is_one_glass(void **state)
     world_add(&w, box(&w, v3(-9, -9, 0), v3(9, 9, 1)), clear(&w), &glass);
     world_add(&w, box(&w, v3(-9, -9, 0.5), v3(9, 9, 2)), clear(&w), &glass);
     world_ready(&w);
-    double x[3];
     for (int i = 0; i < 3; i++) {
         V3 d = v3_unit(v3(0.05 * i, 0, 1));
-        Ray ray = {{0, 0, -1}, d, 0, INFINITY};
-        Interiors inside = {.count = 0};
-        Rgb seen = look_along(&w, &ray, RAY_CAMERA, &inside, 0, 1, false);
-        x[i] = 4 * (double)seen.r - 2;
         double sine = d.x / 1.5, in_glass = 2 * sine / sqrt(1 - sine * sine);
-        assert_true(fabs(x[i] - (8 * d.x / d.z + in_glass)) < 1e-5);
+        assert_true(fabs(ruler_x(&w, d) - (8 * d.x / d.z + in_glass)) < 1e-6);
     }
     world_done(&w);
+}
+
+/* Glass and water that share a face: the ray passes from one into the other, whichever was
+ * written first. */
+static void test_touching_media(void **state)
+{
+    (void)state;
+    const Interior glass = {.ior = 1.5}, water = {.ior = 1.33};
+    V3 d = v3_unit(v3(0.2, 0, 1));
+    double in_glass = d.x / 1.5, in_water = d.x / 1.33;
+    double expected = 7 * d.x / d.z + in_glass / sqrt(1 - in_glass * in_glass) +
+                      2 * in_water / sqrt(1 - in_water * in_water);
+    for (int order = 0; order < 2; order++) {
+        World w;
+        world_init(&w);
+        add_ruler(&w);
+        Shape *a = box(&w, v3(-9, -9, 0), v3(9, 9, 1)), *b = box(&w, v3(-9, -9, 1), v3(9, 9, 3));
+        if (order)
+            world_add(&w, b, clear(&w), &water);
+        world_add(&w, a, clear(&w), &glass);
+        if (!order)
+            world_add(&w, b, clear(&w), &water);
+        world_ready(&w);
+        assert_true(fabs(ruler_x(&w, d) - expected) < 1e-6);
+        world_done(&w);
+    }
+}
+
+/* The same glass as one union of two touching boxes. */
+static void test_wall_inside_a_union(void **state)
+{
+    (void)state;
+    World w;
+    world_init(&w);
+    add_ruler(&w);
+    const Interior glass = {.ior = 1.5};
+    Shape *halves[2] = {box(&w, v3(-9, -9, 0), v3(9, 9, 1)), box(&w, v3(-9, -9, 1), v3(9, 9, 3))};
+    world_add(&w, shape_csg(w.scene.arena, SHAPE_UNION, halves, 2), clear(&w), &glass);
+    world_ready(&w);
+    V3 d = v3_unit(v3(0.2, 0, 1));
+    double in_glass = d.x / 1.5;
+    double expected = 7 * d.x / d.z + 3 * in_glass / sqrt(1 - in_glass * in_glass);
+    assert_true(fabs(ruler_x(&w, d) - expected) < 1e-6);
+    world_done(&w);
+}
+
+/* Glass that stands on a table shows the table. */
+static void test_glass_on_a_table(void **state)
+{
+    (void)state;
+    for (int order = 0; order < 2; order++) {
+        World w;
+        world_init(&w);
+        const Interior glass = {.ior = 1.5};
+        Shape *block = box(&w, v3(-1, -1, 0), v3(1, 1, 1));
+        Shape *table = shape_plane(w.scene.arena, v3(0, 0, -1), -1);
+        const Texture *tinted = flat(&w, (Color5){0.5f, 1, 1, 1, 0}, &dull);
+        if (order)
+            world_add(&w, table, emitter(&w, 1, 0.5f, 0.25f), &air);
+        world_add(&w, block, tinted, &glass);
+        if (!order)
+            world_add(&w, table, emitter(&w, 1, 0.5f, 0.25f), &air);
+        world_ready(&w);
+        /* the bottom face filters once more when it is written first */
+        check_rgb(look(&w), order ? 0.5 : 0.25, 0.5, 0.25);
+        world_done(&w);
+    }
 }
 
 /* --- which texture -------------------------------------------------------------------------- */
@@ -816,6 +885,9 @@ int main(void)
         cmocka_unit_test(test_nested_absorption),
         cmocka_unit_test(test_mirror_inside_absorbs_on_the_way_out),
         cmocka_unit_test(test_overlapping_glass_is_one_glass),
+        cmocka_unit_test(test_touching_media),
+        cmocka_unit_test(test_wall_inside_a_union),
+        cmocka_unit_test(test_glass_on_a_table),
         cmocka_unit_test(test_interior_texture),
         cmocka_unit_test(test_mesh_textures),
         cmocka_unit_test(test_smooth_normal_at_a_silhouette),
