@@ -1,4 +1,5 @@
-/* Cones and cylinders: along the z axis from z = 0 to 1.  Parts: 0 wall, 1 bottom, 2 top.
+/* Cones and cylinders: along the z axis from z = 0 to their height.  Parts: 0 wall, 1 bottom, 2
+ * top.
  *
  * The line is cut to the slab between the caps and to the inside of the wall; what is left is
  * one piece, so that wall and caps meet without a gap.  The wall's discriminant is kept as a
@@ -12,9 +13,14 @@ typedef struct Wall {
     double doubt; /* bound on the error of the left side near a root */
 } Wall;
 
+static double growth_of(const ConeParams *cone)
+{
+    return (cone->top - cone->bottom) / cone->height;
+}
+
 static Wall wall_of(const ConeParams *cone, V3 f, V3 d, V3 error)
 {
-    double growth = cone->top - cone->bottom, k = growth * d.z;
+    double growth = growth_of(cone), k = growth * d.z;
     double radius = cone->bottom + growth * f.z;
     double gx = radius * d.x - k * f.x, gy = radius * d.y - k * f.y;
     double cross = f.x * d.y - f.y * d.x;
@@ -86,12 +92,12 @@ void cone_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
     const ConeParams *cone = &shape->u.cone;
     out->count = 0;
     out->is_inside_before = false;
-    V3 o = v3(ray->o.x, ray->o.y, ray->o.z - 0.5);
+    V3 o = v3(ray->o.x, ray->o.y, ray->o.z - 0.5 * cone->height);
     double base = -v3_dot(o, ray->d) / v3_len2(ray->d);
     V3 f = v3_mad(ray->o, base, ray->d), error = local_error(ray, base);
     Chord chord = CHORD_LINE;
-    if (!chord_cut_slab(&chord, ray->o.z, ray->d.z, error.z + PLACE_EPS, 0, 1, 1, 2,
-                        !cone->is_open))
+    if (!chord_cut_slab(&chord, ray->o.z, ray->d.z, error.z + PLACE_EPS * cone->height, 0,
+                        cone->height, 1, 2, !cone->is_open))
         return;
     Wall wall = wall_of(cone, f, ray->d, error);
     if (cut_wall(&chord, &wall, base) && chord.in.t < chord.out.t)
@@ -101,15 +107,15 @@ void cone_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
 void cone_point(const Shape *shape, uint32_t part, V3 p, LocalPoint *out)
 {
     const ConeParams *cone = &shape->u.cone;
-    double growth = cone->top - cone->bottom;
-    out->error = 2 * PLACE_EPS * (part ? 1 : fmax(cone->bottom, cone->top));
+    double growth = growth_of(cone);
+    out->error = 2 * PLACE_EPS * (part ? cone->height : fmax(cone->bottom, cone->top));
     if (part) {
-        p.z = part == 1 ? 0 : 1;
+        p.z = part == 1 ? 0 : cone->height;
         out->p = p;
         out->n = v3(0, 0, part == 1 ? -1 : 1);
         return;
     }
-    p.z = fmax(0, fmin(1, p.z));
+    p.z = fmax(0, fmin(cone->height, p.z));
     double radius = cone->bottom + growth * p.z, rho = sqrt(p.x * p.x + p.y * p.y);
     double pull = rho > 0 ? radius / rho : 0;
     out->p = v3(p.x * pull, p.y * pull, p.z);
@@ -120,11 +126,11 @@ void cone_point(const Shape *shape, uint32_t part, V3 p, LocalPoint *out)
 bool cone_is_inside(const Shape *shape, V3 p)
 {
     const ConeParams *cone = &shape->u.cone;
-    double radius = cone->bottom + (cone->top - cone->bottom) * p.z;
+    double radius = cone->bottom + growth_of(cone) * p.z;
     double w = p.x * p.x + p.y * p.y;
     if (cone->is_open)
-        return p.z >= 0 && p.z <= 1 && w <= radius * radius;
-    return p.z > 0 && p.z < 1 && w < radius * radius;
+        return p.z >= 0 && p.z <= cone->height && w <= radius * radius;
+    return p.z > 0 && p.z < cone->height && w < radius * radius;
 }
 
 Bound cone_bound(const Shape *shape)
@@ -133,7 +139,7 @@ Bound cone_bound(const Shape *shape)
     V3 reach = v3(hypot(m[0][0], m[0][1]), hypot(m[1][0], m[1][1]), hypot(m[2][0], m[2][1]));
     Bound b = BOUND_EMPTY;
     for (int end = 0; end < 2; end++) {
-        V3 c = xform_point(&shape->xform, v3(0, 0, end));
+        V3 c = xform_point(&shape->xform, v3(0, 0, end ? shape->u.cone.height : 0));
         double r = end ? shape->u.cone.top : shape->u.cone.bottom;
         b = bound_add(bound_add(b, v3_mad(c, r, reach)), v3_mad(c, -r, reach));
     }

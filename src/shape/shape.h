@@ -50,8 +50,10 @@ typedef struct PlaneParams {
 } PlaneParams;
 
 typedef struct ConeParams {
-    double bottom, top; /* radii at z = 0 and z = 1, both >= 0; a cylinder has two equal ones */
-    bool is_open;       /* no caps */
+    double bottom,
+        top;       /* radii at z = 0 and z = height, both >= 0; a cylinder has two equal ones */
+    double height; /* > 0 */
+    bool is_open;  /* no caps */
 } ConeParams;
 
 typedef struct TorusParams {
@@ -86,7 +88,7 @@ struct Shape {
         SphereParams sphere;
         BoxParams box;
         PlaneParams plane;
-        ConeParams cone; /* unit z axis */
+        ConeParams cone;
         TorusParams torus;
         DiscParams disc;
         TriangleParams triangle;
@@ -148,7 +150,7 @@ Shape *shape_plane(Arena *arena, V3 normal, double distance);
 Shape *shape_torus(Arena *arena, double major, double minor);
 Shape *shape_disc(Arena *arena, V3 center, V3 normal, double radius, double hole);
 Shape *shape_triangle(Arena *arena, const V3 corner[3], const V3 *normal_or_null);
-Shape *shape_mesh(Arena *arena, const MeshData *mesh);
+Shape *shape_mesh(Arena *arena, const MeshData *mesh); /* after mesh_index */
 /* kind: SHAPE_UNION, SHAPE_MERGE or SHAPE_INTERSECTION; children are borrowed. */
 Shape *shape_csg(Arena *arena, ShapeKind kind, Shape **children, int child_count);
 

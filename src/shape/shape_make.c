@@ -26,7 +26,8 @@ static void derive_rounding(Shape *s)
             size = fmax(size, v3_sum_abs(s->u.triangle.corner[i]));
         break;
     case SHAPE_MESH:
-        size = fmax(v3_max_abs(s->u.mesh->bound.lo), v3_max_abs(s->u.mesh->bound.hi));
+        if (!bound_is_empty(s->u.mesh->bound))
+            size = fmax(v3_max_abs(s->u.mesh->bound.lo), v3_max_abs(s->u.mesh->bound.hi));
         break;
     default:
         break; /* the others account for it per axis */
@@ -77,11 +78,10 @@ Shape *shape_cone(Arena *arena, V3 bottom, double bottom_radius, V3 top, double 
     Shape *shape = shape_new(arena, SHAPE_CONE);
     if (!shape)
         return NULL;
-    shape->u.cone = (ConeParams){bottom_radius, top_radius, is_open};
     V3 axis = v3_sub(top, bottom), n = v3_unit(axis), s, t;
+    shape->u.cone = (ConeParams){bottom_radius, top_radius, v3_dot(axis, n), is_open};
     v3_frame(n, &s, &t);
-    Xform turn = xform_frame(s, t, n, bottom), size = xform_scale(v3(1, 1, v3_len(axis)));
-    Xform place = xform_then(&size, &turn);
+    Xform place = xform_frame(s, t, n, bottom);
     set_xform(shape, &place);
     return shape;
 }

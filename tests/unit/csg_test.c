@@ -60,9 +60,18 @@ static Shape *clipped(Shape *shape, Shape *clip)
     return shape;
 }
 
-static Shape *ball(double x, double r) { return shape_sphere(arena, v3(x, 0, 0), r); }
-static Shape *box(V3 a, V3 b) { return shape_box(arena, a, b); }
-static Shape *cube(double a, double b) { return box(v3(a, -1, -1), v3(b, 1, 1)); }
+static Shape *ball(double x, double r)
+{
+    return shape_sphere(arena, v3(x, 0, 0), r);
+}
+static Shape *box(V3 a, V3 b)
+{
+    return shape_box(arena, a, b);
+}
+static Shape *cube(double a, double b)
+{
+    return box(v3(a, -1, -1), v3(b, 1, 1));
+}
 
 static CrossList list_x(const Shape *shape)
 {
@@ -93,9 +102,11 @@ static void check_x(const Shape *shape, int count, const double *x, const int *c
     }
 }
 
-#define CHECK_X(shape, n, xs, changes)                                                             \
-    check_x(shape, n, (const double[])xs, (const int[])changes)
-#define L(...) {__VA_ARGS__}
+#define CHECK_X(shape, n, xs, changes) check_x(shape, n, (const double[])xs, (const int[])changes)
+#define L(...)                                                                                     \
+    {                                                                                              \
+        __VA_ARGS__                                                                                \
+    }
 
 static void test_operators(void **state)
 {
@@ -175,7 +186,8 @@ static void test_coincident_turned(void **state)
     for (uint32_t i = 0; i < 200; i++) {
         Rng rng = rng_at(31, 1, i);
         V3 angles = v3(6 * rng_double(&rng), 6 * rng_double(&rng), 6 * rng_double(&rng));
-        Xform turn = xform_rotate(angles), move = xform_translate(v3_scale(angles, i % 2 ? 1 : 100));
+        Xform turn = xform_rotate(angles),
+              move = xform_translate(v3_scale(angles, i % 2 ? 1 : 100));
         Xform both = xform_then(&turn, &move);
         /* One is transformed in one step, the other in two. */
         Shape *a = cube(-1, 1), *b = cube(-1, 1), *c = cube(1, 2);
@@ -238,12 +250,12 @@ static void test_unseen(void **state)
 {
     (void)state;
     double r = sqrt(1 - 0.05);
-    Shape *half = csg(SHAPE_INTERSECTION, 2, ball(0, 1),
-                      shape_disc(arena, v3(0, 0, 0), v3(1, 0, 0), 0.1, 0));
+    Shape *half =
+        csg(SHAPE_INTERSECTION, 2, ball(0, 1), shape_disc(arena, v3(0, 0, 0), v3(1, 0, 0), 0.1, 0));
     CHECK_X(half, 1, L(-r), L(1)); /* the line passes outside of the disc */
     assert_int_equal(list_x(half).count, 2);
-    half = csg(SHAPE_INTERSECTION, 2, ball(0, 1),
-               shape_disc(arena, v3(0, 0, 0), v3(1, 0, 0), 0.5, 0));
+    half =
+        csg(SHAPE_INTERSECTION, 2, ball(0, 1), shape_disc(arena, v3(0, 0, 0), v3(1, 0, 0), 0.5, 0));
     CHECK_X(half, 2, L(-r, 0), L(1, -1));
     Shape *tube = shape_cone(arena, v3(-1, 0, 0), 0.5, v3(1, 0, 0), 0.5, true);
     CHECK_X(difference(cube(-2, 2), tube), 2, L(-2, 2), L(1, -1));
@@ -294,11 +306,16 @@ static Shape *random_leaf(Rng *rng)
     double a = 0.3 + rng_double(rng), x = 2 * rng_double(rng) - 1, y = 2 * rng_double(rng) - 1;
     V3 p = v3(x, y, a - 1), q = v3(y + 0.3, x - 0.6, 1.3 - a);
     switch (rng_u32(rng) % 6) {
-    case 0: return shape_sphere(arena, p, a);
-    case 1: return shape_box(arena, p, v3(-y - 0.1, -x + 0.2, a));
-    case 2: return shape_cone(arena, p, a, q, 0.4, rng_u32(rng) % 2);
-    case 3: return shape_plane(arena, v3(x, y, a), 0.5 * x);
-    case 4: return shape_disc(arena, p, q, a, 0.3 * a);
+    case 0:
+        return shape_sphere(arena, p, a);
+    case 1:
+        return shape_box(arena, p, v3(-y - 0.1, -x + 0.2, a));
+    case 2:
+        return shape_cone(arena, p, a, q, 0.4, rng_u32(rng) % 2);
+    case 3:
+        return shape_plane(arena, v3(x, y, a), 0.5 * x);
+    case 4:
+        return shape_disc(arena, p, q, a, 0.3 * a);
     default: {
         Shape *torus = shape_torus(arena, a, 0.5 * a);
         Xform turn = xform_rotate(v3(x, y, 1)), move = xform_translate(p);
@@ -384,11 +401,16 @@ static void test_random_trees(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_operators),     cmocka_unit_test(test_look),
-        cmocka_unit_test(test_coincident),    cmocka_unit_test(test_abutting),
-        cmocka_unit_test(test_coincident_turned), cmocka_unit_test(test_clip),
-        cmocka_unit_test(test_sheets),        cmocka_unit_test(test_unseen),
-        cmocka_unit_test(test_many_children), cmocka_unit_test(test_overflow),
+        cmocka_unit_test(test_operators),
+        cmocka_unit_test(test_look),
+        cmocka_unit_test(test_coincident),
+        cmocka_unit_test(test_abutting),
+        cmocka_unit_test(test_coincident_turned),
+        cmocka_unit_test(test_clip),
+        cmocka_unit_test(test_sheets),
+        cmocka_unit_test(test_unseen),
+        cmocka_unit_test(test_many_children),
+        cmocka_unit_test(test_overflow),
         cmocka_unit_test(test_random_trees),
     };
     return cmocka_run_group_tests_name("csg", tests, set_up, tear_down);

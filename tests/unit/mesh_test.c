@@ -224,8 +224,8 @@ static void test_empty(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_solid),  cmocka_unit_test(test_edges),
-        cmocka_unit_test(test_sheets), cmocka_unit_test(test_csg),
+        cmocka_unit_test(test_solid),         cmocka_unit_test(test_edges),
+        cmocka_unit_test(test_sheets),        cmocka_unit_test(test_csg),
         cmocka_unit_test(test_smooth_and_uv), cmocka_unit_test(test_empty),
     };
     return cmocka_run_group_tests_name("mesh", tests, set_up, tear_down);
