@@ -1,5 +1,15 @@
 /* Estimates from a photon map.  The only header of photon/ that the eye pass sees.
- * SPDX-License-Identifier: Apache-2.0 */
+ *
+ * What is near: with GATHER_SPHERE the distance d.  With GATHER_DISK the ball is cut to a slab
+ * along the tangent plane, GATHER_SLAB radii thick on either side: the distance is the larger
+ * of d and |height above the plane| / GATHER_SLAB.  Both count exactly pi r^2 of area on a flat
+ * surface, and on a ball of radius R as long as r < 2 GATHER_SLAB R (a cap within distance r of
+ * a point of a sphere has area pi r^2 exactly), so neither is biased by curvature.
+ *
+ * How much each counts: the photon that sets the radius is left out, the others are weighted by
+ * a kernel whose mean over the disk is 1 and divided by pi r^2.  On a uniform field the mean of
+ * every estimate is then the true irradiance, for any k (a flat sum of all k would be too bright
+ * by k/(k-1)).  SPDX-License-Identifier: Apache-2.0 */
 #ifndef PMS_PHOTON_GATHER_H
 #define PMS_PHOTON_GATHER_H
 
@@ -8,33 +18,51 @@
 #include "photon/photon_map.h"
 #include "scene/scene.h"
 
+/* Half the thickness of the slab of GATHER_DISK, in radii. */
+#define GATHER_SLAB 0.2
+
+/* How far the search may widen when fewer than min_photons are within max_radius. */
+#define GATHER_WIDEN 3
+
 typedef struct GatherLimits {
-    int min_photons, max_photons; /* k nearest; max_photons 0: everything within max_radius */
-    double max_radius;            /* scene units */
-    GatherShape shape;            /* disk: flattened to the surface; sphere */
+    int max_photons;   /* k nearest; 0: everything within max_radius */
+    int min_photons;   /* when fewer are within max_radius, the radius grows to hold so many,
+                          up to GATHER_WIDEN times max_radius; 0: it never grows */
+    double max_radius; /* scene units; may be infinite if max_photons is not 0 */
+    GatherShape shape; /* disk: flattened to the surface; sphere */
     GatherKernel kernel;
-    double normal_cosine;         /* photons whose surface normal is further off are ignored */
+    double normal_cosine; /* photons whose surface normal is further off are ignored; -1: none
+                             is.  Above 0 those that arrived on the other side never count. */
 } GatherLimits;
+
+#define GATHER_LIMITS_DEFAULT                                                                      \
+    ((GatherLimits){.max_photons = 100,                                                            \
+                    .min_photons = 20,                                                             \
+                    .max_radius = INFINITY,                                                        \
+                    .shape = GATHER_DISK,                                                          \
+                    .kernel = KERNEL_FLAT,                                                         \
+                    .normal_cosine = 0.5})
 
 /* One photon of an estimate, decoded: power already weighted by kernel and area, so that the
  * sum over all is the irradiance. */
 typedef struct GatheredPhoton {
-    V3 from;  /* unit, towards where it came from */
+    V3 from; /* unit, towards where it came from */
     Rgb irradiance;
 } GatheredPhoton;
 
-/* Working memory of one thread; grows to limits.max_photons. */
+/* Working memory of one thread; grows to what is gathered.  It remembers the last radius to
+ * start the next search well; results do not depend on that. */
 typedef struct GatherScratch GatherScratch;
-GatherScratch *gather_scratch_new(void);
+GatherScratch *gather_scratch_new(void); /* NULL when memory is out */
 void gather_scratch_free(GatherScratch *scratch);
 
 /* Estimate irradiance at p from the photons in `map`.
  *
- * p, n    scene units; n unit, on the side of the viewer; photons that arrived on the other
- *         side of the sheet never count.
+ * p, n    scene units; n unit, the geometric normal on the side of the viewer.
  * out     irradiance per channel, in the lights' own unit; black if nothing was found.
  *
- * Returns the number of photons used.  Never fails.  Any thread. */
+ * Returns the number of photons used.  Never fails (if memory runs out the radius shrinks to
+ * what fits).  Any thread.  O(k + log n). */
 int photon_gather(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
                   GatherScratch *scratch, Rgb *out);
 
@@ -43,7 +71,18 @@ int photon_gather(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
 int photon_gather_list(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
                        GatherScratch *scratch, const GatheredPhoton **out);
 
-/* Return the search radius for a map: the auto radius from the density of its photons. */
+/* Find the photons an estimate would use: their numbers (photon_map_at) in no particular order,
+ * and the square of the radius.  Of photons equally far the lower number is nearer. */
+int photon_nearest(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
+                   GatherScratch *scratch, const uint32_t **out, double *radius2);
+
+/* Return the weight of a kernel at squared distance x = d^2/r^2 in [0,1].  The mean over the
+ * disk, x uniform, is 1, but for KERNEL_GAUSSIAN_JENSEN, whose printed constant loses 46.9 %. */
+double gather_kernel(GatherKernel kernel, double x);
+
+/* Return the search radius for a map: where max_photons are found at the mean density around
+ * its photons, wider when many of them lie much sparser than that.  Scene units; 0 for an empty
+ * map.  Deterministic. */
 double photon_map_radius(const PhotonMap *map, int max_photons);
 
 #endif

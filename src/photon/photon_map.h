@@ -1,4 +1,8 @@
-/* A photon map: photons of one kind, balanced into a kd-tree kept in one array.
+/* A photon map: photons of one kind in a balanced kd-tree.
+ *
+ * The tree is a left-balanced one over blocks of 16 photons, kept in two plain arrays: the
+ * blocks, in which equal fields stand together so that a vector unit takes all 16 at once, and
+ * one float a block boundary, the split plane.  20.25 bytes a photon in all.
  * SPDX-License-Identifier: Apache-2.0 */
 #ifndef PMS_PHOTON_PHOTON_MAP_H
 #define PMS_PHOTON_PHOTON_MAP_H
@@ -12,15 +16,20 @@
 typedef struct PhotonMap PhotonMap;
 
 /* Build a map from photons whose pos is relative to `center`.  Takes ownership of `photons`
- * (from mem_array), also on failure.  The result is the same bytes for any number of threads.
- * ERR_MEMORY or OK. */
+ * (from mem_array), also on failure.  Photons at positions that are not finite are dropped.
+ * The result is the same bytes for any number of threads.  ERR_MEMORY, ERR_INTERRUPTED or OK.
+ * O(n log n); needs another 37 bytes a photon while it runs. */
 Status photon_map_new(Diag *diag, Photon *photons, size_t count, V3 center, int threads,
                       PhotonMap **out);
 void photon_map_free(PhotonMap *map);
 size_t photon_map_count(const PhotonMap *map);
 /* Return all the memory the map holds, bytes. */
 size_t photon_map_bytes(const PhotonMap *map);
-/* Return the photons in tree order, for tests and hashes. */
-const Photon *photon_map_photons(const PhotonMap *map);
+/* Return photon `index` in tree order. */
+Photon photon_map_at(const PhotonMap *map, size_t index);
+/* Return the point photon positions are relative to. */
+V3 photon_map_center(const PhotonMap *map);
+/* Return a hash of every byte of the map: equal maps, equal hashes.  Never 0. */
+uint64_t photon_map_hash(const PhotonMap *map);
 
 #endif

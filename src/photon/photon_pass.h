@@ -9,10 +9,10 @@
 /* Per light: what it was given and what became of it.  emitted = stored_paths + absorbed +
  * escaped + cut, exactly. */
 typedef struct LightBooks {
-    double power;     /* flux onto the targets (caustic) or into the scene (global), summed RGB */
-    double share;     /* of the budget, 0 to 1 */
+    double power; /* flux onto the targets (caustic) or into the scene (global), summed RGB */
+    double share; /* of the budget, 0 to 1 */
     uint64_t budget, emitted, stored_paths, absorbed, escaped, cut;
-    uint64_t stored;  /* photons */
+    uint64_t stored; /* photons */
     Rgb flux_emitted, flux_stored, flux_absorbed, flux_escaped, flux_cut;
 } LightBooks;
 
@@ -22,7 +22,7 @@ typedef struct PhotonBooks {
 } PhotonBooks;
 
 typedef struct PhotonMaps {
-    PhotonMap *caustic, *global; /* NULL: the plan does not call for it */
+    PhotonMap *caustic, *global;          /* NULL: the plan does not call for it */
     double caustic_radius, global_radius; /* gather radii, scene units */
     PhotonBooks books;
 } PhotonMaps;

@@ -1,0 +1,206 @@
+/* Estimates from a photon map.  SPDX-License-Identifier: Apache-2.0 */
+#include "photon/gather.h"
+
+#include "base/mem.h"
+#include "photon/photon_map_int.h"
+#include "photon/search_int.h"
+
+#include <string.h>
+
+/* The Gaussian of Jensen's course notes; its printed scale, and the one that keeps the light:
+ * 1 over the mean of the bracket over the disk, x uniform in [0,1]. */
+#define GAUSSIAN_BETA 1.953
+#define GAUSSIAN_ALPHA_JENSEN 0.918
+#define GAUSSIAN_ALPHA 1.7283093000119807
+
+enum { RADIUS_SAMPLES_MIN = 100, RADIUS_SAMPLES_MAX = 1000, RADIUS_SAMPLES_PART = 20 };
+
+GatherScratch *gather_scratch_new(void)
+{
+    return mem_alloc(sizeof(GatherScratch));
+}
+
+void gather_scratch_free(GatherScratch *scratch)
+{
+    if (!scratch)
+        return;
+    mem_free(scratch->found.distance2);
+    mem_free(scratch->found.index);
+    mem_free(scratch->list);
+    mem_free(scratch);
+}
+
+double gather_kernel(GatherKernel kernel, double x)
+{
+    switch (kernel) {
+    case KERNEL_CONE:
+        return 3 * (1 - sqrt(x));
+    case KERNEL_EPANECHNIKOV:
+        return 2 * (1 - x);
+    case KERNEL_GAUSSIAN:
+    case KERNEL_GAUSSIAN_JENSEN: {
+        double alpha = kernel == KERNEL_GAUSSIAN ? GAUSSIAN_ALPHA : GAUSSIAN_ALPHA_JENSEN;
+        return alpha * (1 - (1 - exp(-GAUSSIAN_BETA / 2 * x)) / (1 - exp(-GAUSSIAN_BETA)));
+    }
+    case KERNEL_FLAT:
+    case KERNEL_COUNT:
+        break;
+    }
+    return 1;
+}
+
+/* Replace squared distances by kernel weights over pi r^2. */
+static void weigh(FoundPhotons *found, GatherKernel kernel, float radius2)
+{
+    float *value = found->distance2;
+    const float scale = (float)(1 / (PMS_PI * (double)radius2)), inverse = 1 / radius2;
+    if (kernel == KERNEL_CONE) {
+        for (size_t i = 0; i < found->count; i++)
+            value[i] = scale * 3 * (1 - sqrtf(value[i] * inverse));
+    } else if (kernel == KERNEL_EPANECHNIKOV) {
+        for (size_t i = 0; i < found->count; i++)
+            value[i] = scale * 2 * (1 - value[i] * inverse);
+    } else if (kernel == KERNEL_FLAT) {
+        for (size_t i = 0; i < found->count; i++)
+            value[i] = scale;
+    } else {
+        for (size_t i = 0; i < found->count; i++)
+            value[i] = scale * (float)gather_kernel(kernel, (double)(value[i] * inverse));
+    }
+}
+
+/* Find what an estimate is made of; see GatherLimits and gather.h. */
+static float find(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
+                  GatherScratch *scratch)
+{
+    float radius2;
+    photon_search(map, p, n, limits, limits->max_photons, limits->max_radius, scratch, &radius2);
+    if (scratch->found.count + 1 < (size_t)limits->min_photons && isfinite(limits->max_radius))
+        photon_search(map, p, n, limits, limits->min_photons, limits->max_radius * GATHER_WIDEN,
+                      scratch, &radius2);
+    return radius2;
+}
+
+/* Return the power step of a stored photon: 2^(exponent - RGBE_BIAS); the exponents in use
+ * make it a normal float, black photons have no mantissa to multiply. */
+static inline float rgbe_step(uint32_t rgbe)
+{
+    uint32_t exponent = rgbe >> 24;
+    exponent = exponent < RGBE_LEAST ? RGBE_LEAST : exponent;
+    uint32_t bits = (exponent - RGBE_BIAS + 127) << 23;
+    float step;
+    memcpy(&step, &bits, sizeof step);
+    return step;
+}
+
+static inline Rgb rgbe_power(uint32_t rgbe)
+{
+    float step = rgbe_step(rgbe);
+    return rgb((float)(rgbe & 255) * step, (float)(rgbe >> 8 & 255) * step,
+               (float)(rgbe >> 16 & 255) * step);
+}
+
+int photon_gather(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
+                  GatherScratch *scratch, Rgb *out)
+{
+    float radius2 = find(map, p, n, limits, scratch);
+    FoundPhotons *found = &scratch->found;
+    *out = RGB_BLACK;
+    if (!(radius2 > 0) || found->count == 0)
+        return 0;
+    weigh(found, limits->kernel, radius2);
+    double r = 0, g = 0, b = 0;
+    for (size_t i = 0; i < found->count; i++) {
+        uint32_t index = found->index[i];
+        uint32_t rgbe = map->blocks[index / BLOCK_PHOTONS].rgbe[index % BLOCK_PHOTONS];
+        Rgb power = rgbe_power(rgbe);
+        r += (double)(power.r * found->distance2[i]);
+        g += (double)(power.g * found->distance2[i]);
+        b += (double)(power.b * found->distance2[i]);
+    }
+    *out = rgb((float)r, (float)g, (float)b);
+    return (int)found->count;
+}
+
+int photon_gather_list(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
+                       GatherScratch *scratch, const GatheredPhoton **out)
+{
+    float radius2 = find(map, p, n, limits, scratch);
+    FoundPhotons *found = &scratch->found;
+    *out = scratch->list;
+    if (!(radius2 > 0))
+        return 0;
+    if (found->count > scratch->list_capacity) {
+        size_t capacity = found->capacity;
+        GatheredPhoton *list = mem_resize(scratch->list, capacity * sizeof *list);
+        if (!list)
+            return 0;
+        scratch->list = list;
+        scratch->list_capacity = capacity;
+    }
+    weigh(found, limits->kernel, radius2);
+    for (size_t i = 0; i < found->count; i++) {
+        const PhotonBlock *block = &map->blocks[found->index[i] / BLOCK_PHOTONS];
+        uint32_t lane = found->index[i] % BLOCK_PHOTONS;
+        uint16_t from = block->from[lane];
+        scratch->list[i] =
+            (GatheredPhoton){direction_decode((uint8_t)from, (uint8_t)(from >> 8)),
+                             rgb_scale(rgbe_power(block->rgbe[lane]), found->distance2[i])};
+    }
+    *out = scratch->list;
+    return (int)found->count;
+}
+
+int photon_nearest(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
+                   GatherScratch *scratch, const uint32_t **out, double *radius2)
+{
+    *radius2 = (double)find(map, p, n, limits, scratch);
+    *out = scratch->found.index;
+    return (int)scratch->found.count;
+}
+
+/* Squared radii around a spread of the map's photons. */
+static size_t sample_radii(const PhotonMap *map, int max_photons, GatherScratch *scratch,
+                           double *radii2)
+{
+    size_t count = photon_map_count(map), samples = count / RADIUS_SAMPLES_PART;
+    samples = samples < RADIUS_SAMPLES_MIN ? RADIUS_SAMPLES_MIN : samples;
+    samples = samples > RADIUS_SAMPLES_MAX ? RADIUS_SAMPLES_MAX : samples;
+    samples = samples > count ? count : samples;
+    GatherLimits limits = {.max_photons = max_photons < (int)count ? max_photons : (int)count,
+                           .max_radius = INFINITY,
+                           .shape = GATHER_SPHERE,
+                           .normal_cosine = -1};
+    size_t used = 0;
+    for (size_t i = 0; i < samples; i++) {
+        Photon photon = photon_map_at(map, (2 * i + 1) * count / (2 * samples));
+        V3 p = v3_add(map->center, v3(photon.pos[0], photon.pos[1], photon.pos[2]));
+        const uint32_t *index;
+        double radius2;
+        photon_nearest(map, p, v3(0, 0, 1), &limits, scratch, &index, &radius2);
+        radii2[used] = radius2;
+        used += radius2 > 0 && isfinite(radius2);
+    }
+    return used;
+}
+
+double photon_map_radius(const PhotonMap *map, int max_photons)
+{
+    double radii2[RADIUS_SAMPLES_MAX];
+    GatherScratch *scratch = gather_scratch_new();
+    if (!scratch || photon_map_count(map) == 0 || max_photons < 1) {
+        gather_scratch_free(scratch);
+        return 0;
+    }
+    size_t used = sample_radii(map, max_photons, scratch, radii2);
+    gather_scratch_free(scratch);
+    double density = 0; /* mean over the photons, so bright places count most */
+    for (size_t i = 0; i < used; i++)
+        density += 1 / radii2[i] / (double)used;
+    if (!(density > 0))
+        return 0;
+    size_t sparse = 0;
+    for (size_t i = 0; i < used; i++)
+        sparse += 1 / radii2[i] < 0.7 * density && 1 / radii2[i] > 0.05 * density;
+    return (1 + 20 * (double)sparse / (double)used) / sqrt(density);
+}

@@ -1,0 +1,131 @@
+/* The codecs of the stored photon.
+ *
+ * RGBE keeps three mantissas and one exponent; rounding them down darkens (a channel 100 times
+ * dimmer than the brightest loses over a quarter of its light), so each is rounded up or down
+ * at random such that its mean is exact.  The direction tables are constant expressions: sines
+ * by their series, unrolled by the preprocessor, so that no one has to fill them at run time.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "photon/photon.h"
+
+#include <math.h>
+
+/* sin(x) for |x| <= pi/2 from its series in y = x*x; the error is below 1e-13. */
+#define SERIES(x, y)                                                                               \
+    ((x) *                                                                                         \
+     (1 -                                                                                          \
+      (y) / 6 *                                                                                    \
+          (1 - (y) / 20 *                                                                          \
+                   (1 - (y) / 42 *                                                                 \
+                            (1 - (y) / 72 *                                                        \
+                                     (1 - (y) / 110 *                                              \
+                                              (1 - (y) / 156 *                                     \
+                                                       (1 - (y) / 210 * (1 - (y) / 272)))))))))
+#define SIN(x) ((float)SERIES((x), ((x) * (x))))
+
+/* Step i of azimuth is 2 pi i/256; of the polar angle pi i/255. */
+#define PHI_SIN(i)                                                                                 \
+    SIN((i) <= 64    ? (i) * (PMS_PI / 128)                                                        \
+        : (i) <= 192 ? (128 - (i)) * (PMS_PI / 128)                                                \
+                     : ((i)-256) * (PMS_PI / 128)),
+#define PHI_COS(i) PHI_SIN(((i) + 64) % 256)
+#define THETA_SIN(i) SIN(((i) <= 127 ? (i) : 255 - (i)) * (PMS_PI / 255)),
+#define THETA_COS(i) SIN((127.5 - (i)) * (PMS_PI / 255)),
+
+#define TABLE_4(f, i) f((i)) f((i) + 1) f((i) + 2) f((i) + 3)
+#define TABLE_16(f, i) TABLE_4(f, i) TABLE_4(f, (i) + 4) TABLE_4(f, (i) + 8) TABLE_4(f, (i) + 12)
+#define TABLE_64(f, i)                                                                             \
+    TABLE_16(f, i) TABLE_16(f, (i) + 16) TABLE_16(f, (i) + 32) TABLE_16(f, (i) + 48)
+#define TABLE_256(f)                                                                               \
+    {                                                                                              \
+        TABLE_64(f, 0) TABLE_64(f, 64) TABLE_64(f, 128) TABLE_64(f, 192)                           \
+    }
+
+static const float phi_sin[DIRECTION_STEPS] = TABLE_256(PHI_SIN);
+static const float phi_cos[DIRECTION_STEPS] = TABLE_256(PHI_COS);
+static const float theta_sin[DIRECTION_STEPS] = TABLE_256(THETA_SIN);
+static const float theta_cos[DIRECTION_STEPS] = TABLE_256(THETA_COS);
+
+/* Make a channel something that can be stored. */
+static double tame(float channel)
+{
+    const double most = 255 * 0x1p119;
+    return !(channel > 0) ? 0 : channel > most ? most : (double)channel;
+}
+
+/* Round up with the probability of the fraction; `bits` is uniform in [0, 2^21). */
+static uint8_t round_at_random(double steps, uint64_t bits)
+{
+    double floor_steps = floor(steps);
+    return (uint8_t)(floor_steps + ((double)bits * 0x1p-21 < steps - floor_steps));
+}
+
+void rgbe_encode(Rgb power, Rng *rng, uint8_t out[4])
+{
+    double r = tame(power.r), g = tame(power.g), b = tame(power.b);
+    uint64_t bits = rng_u64(rng);
+    double most = fmax(r, fmax(g, b));
+    int exponent;
+    frexp(most, &exponent); /* most = m 2^exponent, m in [1/2, 1) */
+    exponent += RGBE_BIAS - 8;
+    if (ldexp(most, RGBE_BIAS - exponent) > 255) /* it could round up to 256 */
+        exponent++;
+    if (exponent < RGBE_LEAST || most == 0)
+        exponent = RGBE_LEAST;
+    double scale = ldexp(1, RGBE_BIAS - exponent);
+    out[0] = round_at_random(r * scale, bits & 0x1fffff);
+    out[1] = round_at_random(g * scale, bits >> 21 & 0x1fffff);
+    out[2] = round_at_random(b * scale, bits >> 42 & 0x1fffff);
+    out[3] = out[0] | out[1] | out[2] ? (uint8_t)exponent : 0;
+}
+
+Rgb rgbe_decode(const uint8_t rgbe[4])
+{
+    if (rgbe[3] == 0)
+        return RGB_BLACK;
+    float step = ldexpf(1, rgbe[3] - RGBE_BIAS);
+    return rgb((float)rgbe[0] * step, (float)rgbe[1] * step, (float)rgbe[2] * step);
+}
+
+void direction_encode(V3 unit, uint8_t *phi, uint8_t *theta)
+{
+    if (!v3_is_finite(unit))
+        unit = v3(0, 0, 1);
+    double polar = acos(fmin(1, fmax(-1, unit.z)));
+    double azimuth = atan2(unit.y, unit.x);
+    *theta = (uint8_t)lrint(polar * ((DIRECTION_STEPS - 1) / PMS_PI));
+    *phi = (uint8_t)(lrint(azimuth * (DIRECTION_STEPS / (2 * PMS_PI))) & (DIRECTION_STEPS - 1));
+}
+
+V3 direction_decode(uint8_t phi, uint8_t theta)
+{
+    double s = theta_sin[theta];
+    return v3(s * phi_cos[phi], s * phi_sin[phi], theta_cos[theta]);
+}
+
+/* One coordinate of the octahedral square, [-1,1] to 0..126. */
+static unsigned octahedral_step(double x)
+{
+    return (unsigned)lrint((fmin(1, fmax(-1, x)) + 1) * ((NORMAL_STEPS - 1) / 2));
+}
+
+uint16_t normal14_encode(V3 unit)
+{
+    double sum = fabs(unit.x) + fabs(unit.y) + fabs(unit.z);
+    if (!(sum > 0) || !isfinite(sum))
+        return normal14_encode(v3(0, 0, 1));
+    double x = unit.x / sum, y = unit.y / sum;
+    if (unit.z < 0) { /* the lower half is folded out over the corners */
+        double folded = copysign(1 - fabs(y), x);
+        y = copysign(1 - fabs(x), y);
+        x = folded;
+    }
+    return (uint16_t)(octahedral_step(x) | octahedral_step(y) << 7);
+}
+
+V3 normal14_decode(uint16_t code)
+{
+    const double step = 2.0 / (NORMAL_STEPS - 1);
+    double x = (code & 127) * step - 1, y = (code >> 7 & 127) * step - 1;
+    double z = 1 - fabs(x) - fabs(y), fold = fmax(-z, 0);
+    return v3_unit(v3(x - copysign(fold, x), y - copysign(fold, y), z));
+}

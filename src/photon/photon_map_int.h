@@ -1,0 +1,40 @@
+/* How a photon map is laid out; for photon/ only.  SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_PHOTON_PHOTON_MAP_INT_H
+#define PMS_PHOTON_PHOTON_MAP_INT_H
+
+#include "photon/photon_map.h"
+
+enum { BLOCK_PHOTONS = 16 };
+
+/* Sixteen photons, field by field: five cache lines, three of them positions. */
+typedef struct PhotonBlock {
+    float pos[3][BLOCK_PHOTONS];  /* unused places are NaN: nearer to nothing */
+    uint32_t rgbe[BLOCK_PHOTONS]; /* r in the low byte, exponent in the high one */
+    uint16_t from[BLOCK_PHOTONS]; /* phi | theta << 8 */
+    uint16_t flags[BLOCK_PHOTONS];
+} PhotonBlock;
+
+static_assert(sizeof(PhotonBlock) == 20 * BLOCK_PHOTONS, "20 bytes a photon");
+
+/* Nodes are numbered as in a heap: the children of i are 2i+1 and 2i+2.  With m blocks the
+ * inner nodes are 0 .. m-2, each a split plane whose two lowest mantissa bits are replaced by
+ * its axis; the rest are blocks (block_of_node). */
+struct PhotonMap {
+    PhotonBlock *blocks; /* aligned to a cache line, in space order */
+    float *splits;       /* block_count - 1 */
+    size_t count;        /* photons */
+    uint32_t block_count;
+    uint32_t level_blocks; /* largest power of two not above block_count */
+    float slack;           /* bound on the distance of a split plane from where it should be */
+    V3 center;
+    void *memory; /* of blocks */
+};
+
+/* Return the block a leaf node stands for. */
+static inline uint32_t block_of_node(const PhotonMap *map, uint32_t node)
+{
+    uint32_t level = map->level_blocks, deeper = map->block_count - level;
+    return node >= 2 * level - 1 ? node - (2 * level - 1) : node - (level - 1) + deeper;
+}
+
+#endif

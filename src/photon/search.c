@@ -1,0 +1,353 @@
+/* Finding photons near a point.
+ *
+ * The tree is walked once, near side first, within a radius guessed from the last search; what
+ * lies within is packed into a flat array, and the k-th smallest distance is then found by
+ * interpolating on counts, which a vector unit makes fast.  A guess that was too small is
+ * widened and the walk repeated; one that was too large is cut down when the array is full.
+ * The outcome (set and order) depends on neither: the photons kept are always those nearer
+ * than the k-th, in the order of the walk.  SPDX-License-Identifier: Apache-2.0 */
+#include "photon/search_int.h"
+
+#include "base/mem.h"
+#include "photon/lanes_int.h"
+#include "photon/photon_map_int.h"
+
+#include <string.h>
+
+static_assert((int)LANES == (int)BLOCK_PHOTONS, "a block is one vector");
+
+enum {
+    STACK_MAX = 40,  /* deeper than any tree of 2^32 photons */
+    ROOM_FACTOR = 4, /* room for so many times k before the radius is cut down */
+    ROOM_MIN = 256,
+    COUNTING_MAX = 24, /* rounds of interpolation before the rest is selected */
+    SELECT_MAX = 8     /* candidates worth selecting at once */
+};
+
+/* Cells as far as the radius are still walked: their distance was rounded. */
+#define REACH_FACTOR (1 + 0x1p-20f)
+
+/* The next search starts with this many times the area the last one needed. */
+#define GUESS_FACTOR 1.25f
+
+typedef struct Search {
+    const PhotonMap *map;
+    FoundPhotons *found;
+    float q[3], n[3];
+    float slab;       /* 1/GATHER_SLAB^2, or 0 for a ball */
+    float cosine2;    /* signed square of the least cosine */
+    bool has_normals; /* look at them at all */
+    size_t wanted;    /* k, or SIZE_MAX: all */
+    float radius2;
+} Search;
+
+typedef struct Cell {
+    uint32_t node;
+    float distance2; /* from q to the cell */
+    float off[3];    /* the same by axis */
+} Cell;
+
+/* --- one block -------------------------------------------------------------------------- */
+
+static void block_distances(const Search *search, const PhotonBlock *block, float out[LANES])
+{
+    const float qx = search->q[0], qy = search->q[1], qz = search->q[2];
+    const float nx = search->n[0], ny = search->n[1], nz = search->n[2];
+    for (int i = 0; i < LANES; i++) {
+        float dx = block->pos[0][i] - qx, dy = block->pos[1][i] - qy, dz = block->pos[2][i] - qz;
+        float d2 = dx * dx + dy * dy + dz * dz;
+        float height = nx * dx + ny * dy + nz * dz;
+        float slab2 = height * height * search->slab;
+        out[i] = slab2 > d2 ? slab2 : d2;
+    }
+}
+
+/* Leave in out[i] whether photon i lies on a surface that looks the right way: the cosine
+ * times its own magnitude, less the limit; the octahedral code is decoded without a root. */
+static void block_facing(const Search *search, const PhotonBlock *block, float out[LANES])
+{
+    const float step = 2.0f / (NORMAL_STEPS - 1);
+    const float nx = search->n[0], ny = search->n[1], nz = search->n[2];
+    for (int i = 0; i < LANES; i++) {
+        int code = block->flags[i] >> 2;
+        float x = (float)(code & 127) * step - 1, y = (float)(code >> 7) * step - 1;
+        float z = 1 - fabsf(x) - fabsf(y);
+        float fold = z < 0 ? -z : 0;
+        x += x < 0 ? fold : -fold;
+        y += y < 0 ? fold : -fold;
+        float dot = nx * x + ny * y + nz * z;
+        out[i] = search->cosine2 * (x * x + y * y + z * z) - dot * fabsf(dot);
+    }
+}
+
+/* --- cutting down to k ------------------------------------------------------------------ */
+
+static size_t count_not_above(const float *values, size_t count, float limit)
+{
+    unsigned total = 0;
+    for (size_t i = 0; i < count; i++)
+        total += values[i] <= limit;
+    return total;
+}
+
+/* Return the rank-th smallest (from 1) of the values in (below, above], of which there are
+ * `count`; `values` is all of them. */
+static float select_between(const float *values, size_t total, float below, float above,
+                            size_t rank)
+{
+    float last = below;
+    while (rank > 0) { /* the next larger value and how often it occurs */
+        float next = above;
+        size_t times = 0;
+        for (size_t i = 0; i < total; i++) {
+            bool is_less = values[i] > last && values[i] < next;
+            times = is_less ? 1 : times + (values[i] == next);
+            next = is_less ? values[i] : next;
+        }
+        last = next;
+        rank = rank > times ? rank - times : 0;
+    }
+    return last;
+}
+
+static float largest_of(const float *values, size_t count)
+{
+    float largest = 0;
+    for (size_t i = 0; i < count; i++)
+        largest = values[i] > largest ? values[i] : largest;
+    return largest;
+}
+
+/* Return the k-th smallest of `count` values, none negative; 0 < k <= count. */
+static float kth_smallest(const float *values, size_t count, size_t k)
+{
+    float below = -1, above = largest_of(values, count);
+    size_t count_below = 0, count_above = count;
+    for (int round = 0; round < COUNTING_MAX && count_above - count_below > SELECT_MAX; round++) {
+        float share = ((float)(k - count_below) - 0.5f) / (float)(count_above - count_below);
+        float low = below < 0 ? 0 : below;
+        float middle =
+            round < COUNTING_MAX / 2 ? low + (above - low) * share : low + (above - low) * 0.5f;
+        if (!(middle > below && middle < above))
+            break;
+        size_t here = count_not_above(values, count, middle);
+        if (here >= k) {
+            above = middle;
+            count_above = here;
+        } else {
+            below = middle;
+            count_below = here;
+        }
+    }
+    return select_between(values, count, below, above, k - count_below);
+}
+
+/* Return the least number such that `wanted` of the photons at distance `level` are not above
+ * it.  Bisected bit by bit: a great many may be equally far. */
+static uint32_t last_of_ties(const FoundPhotons *found, float level, size_t wanted)
+{
+    uint32_t last = 0;
+    for (uint32_t bit = 1u << 31; bit; bit >>= 1) {
+        uint32_t middle = last + (bit - 1);
+        size_t here = 0;
+        for (size_t i = 0; i < found->count; i++)
+            here += found->distance2[i] == level && found->index[i] <= middle;
+        if (here < wanted)
+            last += bit;
+    }
+    return last;
+}
+
+/* Keep of what was found the photons nearer than `level`, and as many of those as far as it as
+ * are needed to make `keep`, lowest numbers first.  The order stays. */
+static void keep_nearest(FoundPhotons *found, float level, size_t keep)
+{
+    size_t nearer = 0, ties = 0;
+    for (size_t i = 0; i < found->count; i++) {
+        nearer += found->distance2[i] < level;
+        ties += found->distance2[i] == level;
+    }
+    bool has_ties = keep > nearer; /* some of those at the level belong to it */
+    uint32_t last = UINT32_MAX;
+    if (has_ties && keep - nearer < ties)
+        last = last_of_ties(found, level, keep - nearer);
+    size_t kept = 0;
+    for (size_t i = 0; i < found->count; i++) {
+        float distance2 = found->distance2[i];
+        uint32_t index = found->index[i];
+        found->distance2[kept] = distance2;
+        found->index[kept] = index;
+        kept += distance2 < level || (has_ties && distance2 == level && index <= last);
+    }
+    found->count = kept;
+}
+
+/* Make room for another block: cut down to the k nearest, or grow.  When memory is out, the
+ * nearest half is what there is. */
+static void make_room(Search *search)
+{
+    FoundPhotons *found = search->found;
+    if (search->wanted == SIZE_MAX) {
+        size_t capacity = found->capacity * 2;
+        float *distance2 = mem_resize(found->distance2, capacity * sizeof *distance2);
+        if (distance2)
+            found->distance2 = distance2;
+        uint32_t *index = distance2 ? mem_resize(found->index, capacity * sizeof *index) : NULL;
+        if (index) {
+            found->index = index;
+            found->capacity = capacity;
+            return;
+        }
+        search->wanted = found->capacity / 2;
+    }
+    search->radius2 = kth_smallest(found->distance2, found->count, search->wanted);
+    keep_nearest(found, search->radius2, search->wanted);
+}
+
+/* --- the walk --------------------------------------------------------------------------- */
+
+static void visit_block(Search *search, uint32_t number)
+{
+    const PhotonBlock *block = &search->map->blocks[number];
+    FoundPhotons *found = search->found;
+    float distance2[LANES], facing[LANES];
+    block_distances(search, block, distance2);
+    unsigned mask = lanes_not_above(distance2, search->radius2);
+    if (!mask)
+        return;
+    if (search->has_normals) {
+        block_facing(search, block, facing);
+        mask &= lanes_not_above(facing, 0);
+    }
+    if (found->count + LANES > found->capacity)
+        make_room(search);
+    found->count += lanes_pack(mask, distance2, number * LANES, found->distance2 + found->count,
+                               found->index + found->count);
+}
+
+static inline int split_axis(float split)
+{
+    uint32_t bits;
+    memcpy(&bits, &split, sizeof bits);
+    return (int)(bits & 3);
+}
+
+static void walk(Search *search)
+{
+    const PhotonMap *map = search->map;
+    const uint32_t inner = map->block_count - 1;
+    Cell stack[STACK_MAX], cell = {0};
+    int depth = 0;
+    for (;;) {
+        while (cell.node < inner) {
+            float split = map->splits[cell.node];
+            int axis = split_axis(split);
+            float delta = search->q[axis] - split;
+            bool is_right = delta >= 0;
+            Cell far = cell;
+            far.node = 2 * cell.node + (is_right ? 1 : 2);
+            far.off[axis] = fmaxf(fabsf(delta) - map->slack, 0);
+            far.distance2 =
+                far.off[0] * far.off[0] + far.off[1] * far.off[1] + far.off[2] * far.off[2];
+            stack[depth] = far;
+            depth += far.distance2 <= search->radius2 * REACH_FACTOR;
+            cell.node = 2 * cell.node + (is_right ? 2 : 1);
+        }
+        visit_block(search, block_of_node(map, cell.node));
+        do {
+            if (depth == 0)
+                return;
+            cell = stack[--depth];
+        } while (!(cell.distance2 <= search->radius2 * REACH_FACTOR));
+    }
+}
+
+/* --- the search ------------------------------------------------------------------------- */
+
+static float *guess_at(GatherScratch *scratch, const PhotonMap *map)
+{
+    for (int i = 0; i < GATHER_GUESSES; i++)
+        if (scratch->guess_map[i] == map)
+            return &scratch->guess_radius2[i];
+    for (int i = GATHER_GUESSES - 1; i > 0; i--) {
+        scratch->guess_map[i] = scratch->guess_map[i - 1];
+        scratch->guess_radius2[i] = scratch->guess_radius2[i - 1];
+    }
+    scratch->guess_map[0] = map;
+    scratch->guess_radius2[0] = INFINITY;
+    return &scratch->guess_radius2[0];
+}
+
+/* Walk with a growing radius until k photons are found or `most` is reached. */
+static void search_nearest(Search *search, float most, float *guess)
+{
+    FoundPhotons *found = search->found;
+    search->radius2 = fminf(*guess, most);
+    for (;;) {
+        float tried = search->radius2;
+        found->count = 0;
+        walk(search);
+        if (found->count >= search->wanted || !(tried < most))
+            break;
+        float factor = 1.5f * (float)search->wanted / (float)(found->count + 1);
+        float wider = tried * fminf(fmaxf(factor, 2), 64);
+        search->radius2 = wider > tried ? fminf(wider, most) : most;
+    }
+    if (found->count >= search->wanted) {
+        search->radius2 = kth_smallest(found->distance2, found->count, search->wanted);
+        *guess = search->radius2 * GUESS_FACTOR;
+        keep_nearest(found, search->radius2, search->wanted - 1);
+    } else {
+        search->radius2 = most;
+        *guess = most;
+    }
+}
+
+static bool has_room(FoundPhotons *found, size_t capacity)
+{
+    if (found->capacity >= capacity)
+        return true;
+    float *distance2 = mem_resize(found->distance2, capacity * sizeof *distance2);
+    if (distance2)
+        found->distance2 = distance2;
+    uint32_t *index = distance2 ? mem_resize(found->index, capacity * sizeof *index) : NULL;
+    if (index) {
+        found->index = index;
+        found->capacity = capacity;
+    }
+    return index != NULL;
+}
+
+void photon_search(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits, int max_photons,
+                   double radius, GatherScratch *scratch, float *radius2)
+{
+    FoundPhotons *found = &scratch->found;
+    V3 q = v3_sub(p, map->center);
+    float most = (float)(radius * radius);
+    found->count = 0;
+    *radius2 = most;
+    size_t wanted = max_photons > 0 ? (size_t)max_photons : SIZE_MAX;
+    size_t room = wanted < SIZE_MAX ? wanted * ROOM_FACTOR + ROOM_MIN : ROOM_MIN;
+    if (!has_room(found, room) && found->capacity < ROOM_MIN)
+        return;
+    if (map->block_count == 0 || !v3_is_finite(q) || !(most >= 0))
+        return;
+    if (wanted < SIZE_MAX && wanted > found->capacity / 2) /* memory was out */
+        wanted = found->capacity / 2;
+    double cosine = limits->normal_cosine;
+    Search search = {.map = map,
+                     .found = found,
+                     .q = {(float)q.x, (float)q.y, (float)q.z},
+                     .n = {(float)n.x, (float)n.y, (float)n.z},
+                     .slab = limits->shape == GATHER_DISK ? (float)(1 / (GATHER_SLAB * GATHER_SLAB))
+                                                          : 0,
+                     .cosine2 = (float)(cosine * fabs(cosine)),
+                     .has_normals = cosine > -1,
+                     .wanted = wanted,
+                     .radius2 = most};
+    if (wanted == SIZE_MAX)
+        walk(&search);
+    else
+        search_nearest(&search, most, guess_at(scratch, map));
+    *radius2 = search.radius2;
+}

@@ -1,0 +1,31 @@
+/* Finding photons near a point; for photon/ only.  SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_PHOTON_SEARCH_INT_H
+#define PMS_PHOTON_SEARCH_INT_H
+
+#include "photon/gather.h"
+
+enum { GATHER_GUESSES = 2 }; /* a pixel asks two maps in turn */
+
+/* Photons found.  distance2 has room for whole blocks past count. */
+typedef struct FoundPhotons {
+    float *distance2; /* as the gather shape measures it, scene units squared */
+    uint32_t *index;
+    size_t count, capacity;
+} FoundPhotons;
+
+struct GatherScratch {
+    FoundPhotons found;
+    float *weights; /* as long as found */
+    GatheredPhoton *list;
+    size_t list_capacity;
+    const PhotonMap *guess_map[GATHER_GUESSES]; /* whose last squared radius is known */
+    float guess_radius2[GATHER_GUESSES];
+};
+
+/* Leave in scratch->found the photons an estimate of at most `max_photons` within `radius` is
+ * made from, in the order the tree is walked; *radius2 is the square of the radius they fill.
+ * max_photons 0: all of them. */
+void photon_search(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits, int max_photons,
+                   double radius, GatherScratch *scratch, float *radius2);
+
+#endif
