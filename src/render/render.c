@@ -52,18 +52,7 @@ static GatherLimits gather_limits(const SceneSettings *settings, double radius)
 /* Return a number that differs when any byte of the map does; 0 is kept for no map. */
 static uint64_t map_hash(const PhotonMap *map)
 {
-    if (!map)
-        return 0;
-    size_t count = photon_map_count(map);
-    const Photon *photons = photon_map_photons(map);
-    uint64_t hash = count;
-    for (size_t i = 0; i < count; i++) {
-        uint64_t words[3] = {0};
-        memcpy(words, &photons[i], sizeof photons[i]);
-        for (int k = 0; k < 3; k++)
-            hash = rng_mix(hash * 0x9e3779b97f4a7c15u + words[k]);
-    }
-    return hash | (hash == 0);
+    return map ? photon_map_hash(map) : 0;
 }
 
 /* --- the render ----------------------------------------------------------------------------- */
