@@ -40,10 +40,27 @@ static const char *program_folder(char out[PATH_MAX_BYTES], const char *relative
 {
     char program[PATH_MAX_BYTES], folder[PATH_MAX_BYTES];
     ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    out[0] = 0;
     if (length <= 0)
-        return NULL;
+        return out;
     program[length] = 0;
-    return join(out, folder_of(folder, program), relative) ? out : NULL;
+    if (!join(out, folder_of(folder, program), relative))
+        out[0] = 0;
+    return out;
+}
+
+const char *sdl_own_folder(int i, char out[FILE_PATH_MAX])
+{
+    switch (i) {
+    case 0:
+        return program_folder(out, "../../stdlib");
+    case 1:
+        return program_folder(out, "../share/pms");
+    case 2:
+        return PMS_DATA_DIR;
+    default:
+        return NULL;
+    }
 }
 
 /* Return the i-th folder of the search order, "" for the current one; NULL: skip it.  *is_last
@@ -58,17 +75,9 @@ static const char *search_folder(Parser *p, int i, char out[PATH_MAX_BYTES], boo
         return folder_of(out, p->frame_count ? frame_top(p)->file->source->path : "");
     if (i < 2 + libraries)
         return p->options->library_paths[i - 2];
-    switch (i - 2 - libraries) {
-    case 0:
-        return program_folder(out, "../../stdlib");
-    case 1:
-        return program_folder(out, "../share/pms");
-    case 2:
-        return PMS_DATA_DIR;
-    default:
-        *is_last = true;
-        return NULL;
-    }
+    const char *own = sdl_own_folder(i - 2 - libraries, out);
+    *is_last = !own;
+    return own;
 }
 
 /* Replace the last component of `path` by the name of a file that differs only in case. */

@@ -2,6 +2,7 @@
 #ifndef PMS_SDL_SDL_H
 #define PMS_SDL_SDL_H
 
+#include "base/file.h"
 #include "scene/scene.h"
 
 typedef struct SdlDeclare {
@@ -20,6 +21,10 @@ typedef struct SdlOptions {
     long max_tokens;        /* tokens evaluated; 0: SDL_MAX_TOKENS */
     int threads;            /* for building mesh indices */
 } SdlOptions;
+
+/* Return the i-th folder of pms's own include files ("" or one that does not exist: not here),
+ * searched after all others; NULL past the last.  `out` is room for it. */
+const char *sdl_own_folder(int i, char out[FILE_PATH_MAX]);
 
 #define SDL_MAX_TOKENS 200000000L
 

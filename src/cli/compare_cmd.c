@@ -1,0 +1,63 @@
+/* pms compare: how far apart two images are.  SPDX-License-Identifier: Apache-2.0 */
+#include "cli/verdict.h"
+
+static Status write_difference(const Args *args, const Image *a, const Image *b)
+{
+    double gain;
+    TRY(args_number(args, OPT_GAIN, 0, 1e6, 4, &gain));
+    if (!args_has(args, OPT_DIFF))
+        return OK;
+    Image difference;
+    TRY(image_difference(args->diag, a, b, (float)gain, &difference));
+    Status status = picture_write(args->diag, args->value[OPT_DIFF], &difference);
+    image_done(&difference);
+    return status;
+}
+
+static Status compare_loaded(const Args *args, const Image *a, const Image *b)
+{
+    Thresholds limits;
+    CompareResult result;
+    TRY(thresholds_read(args, &limits));
+    TRY(image_compare(args->diag, a, b, &result));
+    TRY(write_difference(args, a, b));
+    if (args_has(args, OPT_JSON)) {
+        printf("{");
+        metrics_print_json(stdout, &result);
+        printf("}\n");
+    } else {
+        metrics_print(stdout, &result);
+    }
+    return thresholds_check(args->diag, &limits, &result);
+}
+
+static Status compare(Args *args, int argc, char **argv)
+{
+    bool is_done;
+    TRY(args_parse(args, "compare", argc, argv, &is_done));
+    if (is_done)
+        return OK;
+    if (args->operand_count != 2)
+        return diag_fail(args->diag, ERR_USAGE, "pms compare wants two images, got %d",
+                         args->operand_count);
+    Image a, b;
+    TRY(image_load(args->diag, args->operands[0], &a));
+    Status status = image_load(args->diag, args->operands[1], &b);
+    if (status == OK)
+        status = compare_loaded(args, &a, &b);
+    image_done(&a);
+    image_done(&b);
+    return status;
+}
+
+int compare_cmd(int argc, char **argv)
+{
+    Diag diag;
+    diag_init(&diag, NULL, NULL);
+    Args args = {.arena = arena_new(), .diag = &diag};
+    Status status =
+        args.arena ? compare(&args, argc, argv) : diag_no_memory(&diag, "the command line");
+    arena_free(args.arena);
+    diag_done(&diag);
+    return status_exit_code(status);
+}
