@@ -125,10 +125,15 @@ static void number_value(Parser *p, Value *out)
 
 static void other_value(Parser *p, Value *out)
 {
-    if (parse_peek(p)->kind == KW_ARRAY)
+    if (parse_peek(p)->kind == KW_ARRAY) {
         parse_array(p, out);
-    else if (!read_value(p, out))
+        return;
+    }
+    /* Directives inside a block are carried out where they stand, in a #declare too. */
+    HoldState hold = hold_aside(p);
+    if (!read_value(p, out))
         parse_fail_here(p, "as a value");
+    hold_restore(p, hold);
 }
 
 void parse_value(Parser *p, Value *out)
