@@ -18,7 +18,10 @@ typedef struct Material {
     const Interior *interior;
 } Material;
 
-enum { NODE_DEPTH_MAX = 200 }; /* what nests deeper is refused: every walk is recursive */
+enum {
+    NODE_DEPTH_MAX = 200,         /* what nests deeper is refused: every walk is recursive */
+    NODE_COPIES_MAX = 10 * 1000 * 1000 /* copies of declared objects, counted by their nodes */
+};
 
 typedef enum NodeKind { NODE_LEAF, NODE_CSG, NODE_LIGHT } NodeKind;
 
@@ -28,6 +31,7 @@ struct Node {
     Span span;
     const char *name;           /* identifier or keyword, for messages and explain */
     bool is_named;              /* name is an identifier */
+    long size;                  /* nodes in this tree, itself included */
     int depth;                  /* of a CSG node: 1 + that of its deepest child; a leaf has 0 */
     Shape *shape;               /* of a leaf */
     ShapeKind csg;              /* of a CSG node: union, merge or intersection */
@@ -52,6 +56,7 @@ typedef struct SceneBuild {
     Arena *arena;               /* the scene's */
     Node **nodes;               /* top-level objects in written order, lights too */
     size_t node_count, node_capacity;
+    long copies;                /* nodes copied from declared objects so far */
     const Texture *default_texture; /* #default; applied when a top-level object is added */
 } SceneBuild;
 

@@ -6,6 +6,7 @@ typedef struct NodeList {
     Node **items;
     size_t count, capacity;
     int depth; /* of the deepest item */
+    long size; /* of all items */
 } NodeList;
 
 /* Read objects as long as there are any. */
@@ -17,6 +18,7 @@ static NodeList read_objects(Parser *p)
         list.items[list.count++] = node;
         if (node->depth > list.depth)
             list.depth = node->depth;
+        list.size += node->size;
         if (list.depth >= NODE_DEPTH_MAX)
             parse_fail(p, node->span, "objects nest too deep (limit %d)", NODE_DEPTH_MAX);
     }
@@ -31,6 +33,7 @@ static Node *csg_node(Parser *p, ShapeKind kind, NodeList list)
     node->children = list.items;
     node->child_count = (int)list.count;
     node->depth = list.depth + 1;
+    node->size = list.size + 1;
     return node;
 }
 
@@ -107,7 +110,9 @@ static NodeList read_region(Parser *p, const char *where)
     return list;
 }
 
-static void append_nodes(Parser *p, Node ***nodes, int *count, Node **more, size_t more_count)
+/* Append to the clips or bounds of `owner`, whose depth and size grow with them. */
+static void append_nodes(Parser *p, Node *owner, Node ***nodes, int *count, Node **more,
+                         size_t more_count)
 {
     size_t old = (size_t)*count;
     Node **all = parse_alloc(p, (old + more_count) * sizeof *all);
@@ -115,6 +120,11 @@ static void append_nodes(Parser *p, Node ***nodes, int *count, Node **more, size
         all[i] = (*nodes)[i];
     for (size_t i = 0; i < more_count; i++)
         all[old + i] = more[i];
+    for (size_t i = 0; i < more_count; i++) {
+        owner->size += more[i]->size;
+        if (more[i]->depth + 1 > owner->depth)
+            owner->depth = more[i]->depth + 1;
+    }
     *nodes = all;
     *count = (int)(old + more_count);
 }
@@ -134,16 +144,14 @@ void read_clipped_by(Parser *p, Node *node)
     read_open(p);
     if (parse_accept(p, KW_BOUNDED_BY)) {
         parse_expect(p, TOKEN_RBRACE, "bounded_by");
-        append_nodes(p, &node->clips, &node->clip_count,
+        append_nodes(p, node, &node->clips, &node->clip_count,
                      copy_nodes(p, node->bounds, node->bound_count), (size_t)node->bound_count);
     } else {
         NodeList list = read_region(p, "in clipped_by");
-        append_nodes(p, &node->clips, &node->clip_count, list.items, list.count);
+        append_nodes(p, node, &node->clips, &node->clip_count, list.items, list.count);
     }
     for (int i = 0; i < node->clip_count; i++) {
         const Node *clip = node->clips[i];
-        if (clip->depth + 1 > node->depth)
-            node->depth = clip->depth + 1;
         if (clip->kind == NODE_LIGHT || !node_is_solid(clip))
             parse_fail(p, clip->span, "clipped_by wants objects that have an inside");
         if (has_texture(clip))
@@ -156,13 +164,10 @@ void read_bounded_by(Parser *p, Node *node)
     read_open(p);
     if (parse_accept(p, KW_CLIPPED_BY)) {
         parse_expect(p, TOKEN_RBRACE, "clipped_by");
-        append_nodes(p, &node->bounds, &node->bound_count,
+        append_nodes(p, node, &node->bounds, &node->bound_count,
                      copy_nodes(p, node->clips, node->clip_count), (size_t)node->clip_count);
         return;
     }
     NodeList list = read_region(p, "in bounded_by");
-    append_nodes(p, &node->bounds, &node->bound_count, list.items, list.count);
-    for (int i = 0; i < node->bound_count; i++)
-        if (node->bounds[i]->depth + 1 > node->depth)
-            node->depth = node->bounds[i]->depth + 1;
+    append_nodes(p, node, &node->bounds, &node->bound_count, list.items, list.count);
 }

@@ -239,6 +239,7 @@ Node *read_light_source(Parser *p)
     Span brace = parse_last_span(p);
     Node *node = parse_alloc(p, sizeof *node);
     node->kind = NODE_LIGHT;
+    node->size = 1;
     Light *light = node->light = parse_alloc(p, sizeof *light);
     *light = (Light){.point_at = {0, 0, 1}, .photon_share = 1};
     light->area.adaptive = ADAPTIVE_OFF;

@@ -46,7 +46,13 @@ static Node *read_named_object(Parser *p)
     const Value *value = parse_accept_value(p, VALUE_OBJECT);
     if (!value)
         return NULL;
-    Node *node = parse_no_null(p, node_copy(parse_arena(p), value->node));
+    const Node *declared = value->node;
+    SceneBuild *build = parse_build(p);
+    build->copies += declared->size;
+    if (build->copies > NODE_COPIES_MAX)
+        parse_fail(p, head.span, "declared objects are copied too often (limit %d parts)",
+                   NODE_COPIES_MAX);
+    Node *node = parse_no_null(p, node_copy(parse_arena(p), declared));
     node->span = head.span;
     node->name = read_word(p, &head);
     node->is_named = true;

@@ -11,6 +11,7 @@ Node *read_leaf(Parser *p, const Shape *shape)
 {
     Node *node = parse_alloc(p, sizeof *node);
     node->kind = NODE_LEAF;
+    node->size = 1;
     node->shape = parse_no_null(p, shape);
     return node;
 }
@@ -21,6 +22,7 @@ Node *read_empty(Parser *p)
     node->kind = NODE_CSG;
     node->csg = SHAPE_UNION;
     node->depth = 1;
+    node->size = 1;
     return node;
 }
 
