@@ -207,7 +207,7 @@ static Text literal_text(Parser *p, const Token *literal)
         else if ((unsigned char)c > 127)
             i += take_foreign(p, literal, i, &b, &is_told);
         else
-            b.bytes[b.length++] = literal->text[i++];
+            builder_add(p, &b, &literal->text[i++], 1);
     }
     return builder_text(p, &b);
 }

@@ -84,14 +84,16 @@ static void take_arguments(Parser *p, const Macro *macro, Span call)
     parse_next(p);
 }
 
-static void bind_parameters(Parser *p, const Macro *macro, const Argument *arguments)
+/* `base`: the first of the call's arguments. */
+static void bind_parameters(Parser *p, const Macro *macro, size_t base)
 {
     for (int i = 0; i < macro->parameter_count; i++) {
+        const Argument *argument = &p->arguments[base + (size_t)i];
         Symbol *symbol = symbol_local(p, macro->parameters[i]);
-        if (arguments[i].alias)
-            symbol->target = arguments[i].alias;
+        if (argument->alias)
+            symbol->target = argument->alias;
         else
-            symbol->value = arguments[i].value;
+            symbol->value = argument->value;
     }
 }
 
@@ -107,7 +109,7 @@ void macro_call(Parser *p, const Macro *macro)
     parse_next(p);
     take_arguments(p, macro, name.span);
     frame_push_macro(p, macro, span_join(name.span, p->last));
-    bind_parameters(p, macro, &p->arguments[base]);
+    bind_parameters(p, macro, base);
     p->argument_count = base;
     nest_leave(p);
     hold_restore(p, hold);
