@@ -44,9 +44,9 @@ static bool narrow(double o, double d, double lo, double hi, double *near, doubl
     if (d == 0)
         return o >= lo && o <= hi;
     double t0 = (lo - o) / d, t1 = (hi - o) / d;
-    double first = fmin(t0, t1), last = fmax(t0, t1);
-    *near = fmax(*near, first - 4 * EPS_DOUBLE * fabs(first));
-    *far = fmin(*far, last + 4 * EPS_DOUBLE * fabs(last));
+    double first = num_min(t0, t1), last = num_max(t0, t1);
+    *near = num_max(*near, first - 4 * EPS_DOUBLE * fabs(first));
+    *far = num_min(*far, last + 4 * EPS_DOUBLE * fabs(last));
     return *near <= *far;
 }
 

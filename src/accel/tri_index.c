@@ -97,9 +97,9 @@ static void bound_error(const Shear *s, const Sheared p[3], double det, TriHit *
     double width = 0, depth = 0, far = 0;
     for (int i = 0; i < 3; i++) {
         int next = i == 2 ? 0 : i + 1;
-        width = fmax(width, fabs(p[next].x - p[i].x) + fabs(p[next].y - p[i].y));
-        depth = fmax(depth, fabs(p[next].z - p[i].z));
-        far = fmax(far, fabs(p[i].z));
+        width = num_max(width, fabs(p[next].x - p[i].x) + fabs(p[next].y - p[i].y));
+        depth = num_max(depth, fabs(p[next].z - p[i].z));
+        far = num_max(far, fabs(p[i].z));
     }
     /* Along the ray's main axis a unit of t is at least 1/sqrt(3) of its length. */
     double per_z = fabs(s->sz);

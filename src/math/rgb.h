@@ -27,8 +27,17 @@ static inline Rgb rgb_mad(Rgb a, float s, Rgb b)
 }
 
 static inline Rgb rgb_lerp(Rgb a, Rgb b, float t) { return rgb_mad(a, t, rgb_sub(b, a)); }
-static inline float rgb_max(Rgb a) { return fmaxf(a.r, fmaxf(a.g, a.b)); }
-static inline float rgb_min(Rgb a) { return fminf(a.r, fminf(a.g, a.b)); }
+static inline float rgb_max(Rgb a)
+{
+    float m = a.g > a.r ? a.g : a.r;
+    return a.b > m ? a.b : m;
+}
+
+static inline float rgb_min(Rgb a)
+{
+    float m = a.g < a.r ? a.g : a.r;
+    return a.b < m ? a.b : m;
+}
 static inline float rgb_sum(Rgb a) { return a.r + a.g + a.b; }
 
 /* Return the largest magnitude of the channels. */

@@ -8,6 +8,7 @@
 #include "math/roots.h"
 
 #include "math/eps.h"
+#include "math/v3.h"
 
 #include <stdbool.h>
 #include <float.h>
@@ -172,7 +173,7 @@ static int solve_quadratic(const Poly *p, Root *out)
     double root = disc > 0 ? sqrt(disc) : 0;
     double q = -(b + copysign(root, b));
     double x0 = q / a, x1 = q != 0 ? c / q : x0;
-    double d_root = root > 0 ? fmin(doubt / root, sqrt(doubt)) : sqrt(doubt);
+    double d_root = root > 0 ? num_min(doubt / root, sqrt(doubt)) : sqrt(doubt);
     double own = (d_root + 0.5 * p->e[1]) / fabs(a);
     double e0 = own + fabs(x0) * (p->e[2] / fabs(a) + 8 * EPS_DOUBLE);
     double e1 = q != 0 ? (p->e[0] + fabs(x1) * (d_root + 0.5 * p->e[1])) / fabs(q) +

@@ -76,7 +76,7 @@ V2 warp_disk(V2 u)
 V3 warp_cone(V2 u, double cos_max)
 {
     double z = 1 - u.u * (1 - cos_max);
-    double r = sqrt(fmax(0, 1 - z * z)), phi = 2 * PMS_PI * u.v;
+    double r = sqrt(num_max(0, 1 - z * z)), phi = 2 * PMS_PI * u.v;
     return v3(r * cos(phi), r * sin(phi), z);
 }
 
@@ -88,7 +88,7 @@ V3 warp_sphere(V2 u)
 V3 warp_cosine(V2 u)
 {
     V2 p = warp_disk(u);
-    return v3(p.u, p.v, sqrt(fmax(0, 1 - p.u * p.u - p.v * p.v)));
+    return v3(p.u, p.v, sqrt(num_max(0, 1 - p.u * p.u - p.v * p.v)));
 }
 
 V3 warp_to_frame(V3 local, V3 n)

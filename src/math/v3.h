@@ -9,6 +9,11 @@
 
 #define PMS_PI 3.14159265358979323846
 
+/* The smaller or larger of two numbers; a when b is NaN.  fmin and fmax are calls into the
+ * library, for they must look for NaN: too slow for inner loops. */
+static inline double num_min(double a, double b) { return b < a ? b : a; }
+static inline double num_max(double a, double b) { return b > a ? b : a; }
+
 typedef struct V2 {
     double u, v;
 } V2;
@@ -39,23 +44,39 @@ static inline V3 v3_cross(V3 a, V3 b)
     return v3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
-/* Return a/|a|; the zero vector stays zero.  Scaled first, so that no length overflows or
- * underflows. */
+/* Return a/|a|; the zero vector stays zero.  Scaled first where the square would overflow or
+ * underflow. */
 static inline V3 v3_unit(V3 a)
 {
-    double largest = fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z)));
-    if (!(largest > 0))
-        return v3(0, 0, 0);
-    if (largest < 1e-140 || largest > 1e140)
-        a = v3_scale(a, 1 / largest);
-    return v3_scale(a, 1 / v3_len(a));
+    double length2 = v3_len2(a);
+    if (!(length2 > 1e-280 && length2 < 1e280)) {
+        double largest = num_max(num_max(fabs(a.x), fabs(a.y)), fabs(a.z));
+        if (!(largest > 0))
+            return v3(0, 0, 0);
+        int exponent;
+        frexp(largest, &exponent);
+        a = v3(ldexp(a.x, -exponent), ldexp(a.y, -exponent), ldexp(a.z, -exponent));
+        length2 = v3_len2(a);
+    }
+    return v3_scale(a, 1 / sqrt(length2));
 }
 
-static inline V3 v3_min(V3 a, V3 b) { return v3(fmin(a.x, b.x), fmin(a.y, b.y), fmin(a.z, b.z)); }
-static inline V3 v3_max(V3 a, V3 b) { return v3(fmax(a.x, b.x), fmax(a.y, b.y), fmax(a.z, b.z)); }
+/* Component by component; a NaN in b counts for nothing. */
+static inline V3 v3_min(V3 a, V3 b)
+{
+    return v3(num_min(a.x, b.x), num_min(a.y, b.y), num_min(a.z, b.z));
+}
+
+static inline V3 v3_max(V3 a, V3 b)
+{
+    return v3(num_max(a.x, b.x), num_max(a.y, b.y), num_max(a.z, b.z));
+}
 
 /* Return the largest magnitude of the components. */
-static inline double v3_max_abs(V3 a) { return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z))); }
+static inline double v3_max_abs(V3 a)
+{
+    return num_max(num_max(fabs(a.x), fabs(a.y)), fabs(a.z));
+}
 
 static inline bool v3_is_finite(V3 a) { return isfinite(a.x) && isfinite(a.y) && isfinite(a.z); }
 

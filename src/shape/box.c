@@ -2,70 +2,59 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "shape/shape_int.h"
 
-bool chord_cut_slab(Chord *chord, double o, double d, double error, double lo, double hi,
-                    uint32_t lo_part, uint32_t hi_part, bool is_visible)
+/* Where a line enters and leaves a box, and through which sides. */
+typedef struct Passage {
+    double in, out;
+    uint32_t in_part, out_part;
+} Passage;
+
+/* Cut the passage to one pair of sides.  A line that runs along them has an infinite inverse:
+ * then the t are infinite too, or, on a side, no numbers, and cut nothing. */
+static inline void cut(Passage *p, double o, double inverse, double lo, double hi, uint32_t part)
 {
-    if (d == 0)
-        return o >= lo && o <= hi;
-    double first = (lo - o) / d, last = (hi - o) / d;
-    if (d < 0) {
-        double swap = first;
-        first = last, last = swap;
-        uint32_t swap_part = lo_part;
-        lo_part = hi_part, hi_part = swap_part;
+    bool is_back = inverse < 0;
+    double first = ((is_back ? hi : lo) - o) * inverse;
+    double last = ((is_back ? lo : hi) - o) * inverse;
+    if (first > p->in) {
+        p->in = first;
+        p->in_part = part + is_back;
     }
-    double per = 1 / fabs(d);
-    if (first > chord->in.t)
-        chord->in =
-            (LeafHit){first, error * per + 4 * EPS_DOUBLE * fabs(first), lo_part, 1, is_visible};
-    if (last < chord->out.t)
-        chord->out =
-            (LeafHit){last, error * per + 4 * EPS_DOUBLE * fabs(last), hi_part, -1, is_visible};
-    return chord->in.t <= chord->out.t;
+    if (last < p->out) {
+        p->out = last;
+        p->out_part = part + !is_back;
+    }
 }
 
-void chord_hits(const Chord *chord, LeafHits *out)
+/* Make the hit on a side: bound the error of the local coordinate there, the side's own rounding
+ * included, and divide by the speed. */
+static LeafHit side_hit(const Shape *shape, const LocalRay *ray, double t, uint32_t part,
+                        int8_t change)
 {
-    out->count = 0;
-    out->is_inside_before = chord->in.t == -INFINITY;
-    if (chord->in.t > -INFINITY)
-        out->at[out->count++] = chord->in;
-    if (chord->out.t < INFINITY)
-        out->at[out->count++] = chord->out;
-}
-
-/* Bound the error of the local coordinate on one axis where the line meets the slab's sides;
- * the sides' own rounding included. */
-static double axis_error(double o, double o_error, double d, double d_error, double lo, double hi)
-{
-    double side = fmax(fabs(lo), fabs(hi));
-    double error = PLACE_EPS * side + 2 * EPS_DOUBLE * fabs(o) + o_error;
-    return d_error > 0 ? error + d_error * (fabs(o) + side) / fabs(d) : error;
+    int axis = (int)part >> 1;
+    double side = fabs(v3_at(part & 1 ? shape->u.box.hi : shape->u.box.lo, axis));
+    double far = fabs(v3_at(ray->o, axis)), d = fabs(v3_at(ray->d, axis));
+    double error = PLACE_EPS * side + 2 * EPS_DOUBLE * far + v3_at(ray->o_error, axis) +
+                   fabs(t) * v3_at(ray->d_error, axis);
+    return (LeafHit){t, error / d + 4 * EPS_DOUBLE * fabs(t), part, change, true};
 }
 
 void box_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
 {
-    V3 lo = shape->u.box.lo, hi = shape->u.box.hi;
-    Chord chord = CHORD_LINE;
+    const BoxParams *b = &shape->u.box;
+    Passage p = {-INFINITY, INFINITY, 0, 0};
+    cut(&p, ray->o.x, 1 / ray->d.x, b->lo.x, b->hi.x, 0);
+    cut(&p, ray->o.y, 1 / ray->d.y, b->lo.y, b->hi.y, 2);
+    cut(&p, ray->o.z, 1 / ray->d.z, b->lo.z, b->hi.z, 4);
     out->count = 0;
     out->is_inside_before = false;
-#define CUT(axis, part)                                                                            \
-    if (!chord_cut_slab(&chord, ray->o.axis, ray->d.axis,                                          \
-                        axis_error(ray->o.axis, ray->o_error.axis, ray->d.axis, ray->d_error.axis, \
-                                   lo.axis, hi.axis),                                              \
-                        lo.axis, hi.axis, part, part + 1, true))                                   \
-        return;
-    CUT(x, 0)
-    CUT(y, 2)
-    CUT(z, 4)
-#undef CUT
-    if (chord.in.t < chord.out.t) {
-        chord_hits(&chord, out);
-    } else if (chord.in.part >> 1 == chord.out.part >> 1) {
+    if (p.in < p.out) {
+        out->count = 2;
+        out->at[0] = side_hit(shape, ray, p.in, p.in_part, 1);
+        out->at[1] = side_hit(shape, ray, p.out, p.out_part, -1);
+    } else if (p.in == p.out && p.in_part >> 1 == p.out_part >> 1) {
         /* A box without thickness on this axis is a sheet. */
         out->count = 1;
-        out->at[0] = chord.in;
-        out->at[0].change = 0;
+        out->at[0] = side_hit(shape, ray, p.in, p.in_part, 0);
     }
 }
 

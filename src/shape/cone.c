@@ -7,6 +7,48 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "shape/shape_int.h"
 
+/* The part of a line inside a convex solid. */
+typedef struct Chord {
+    LeafHit in, out; /* t may be infinite; then the other fields mean nothing */
+} Chord;
+
+#define CHORD_LINE ((Chord){{.t = -INFINITY}, {.t = INFINITY}})
+
+/* Cut a chord to the slab lo <= o + t d <= hi; lo_part and hi_part name its sides.  Returns
+ * false when nothing is left. */
+static bool cut_slab(Chord *chord, double o, double d, double error, double lo, double hi,
+                     uint32_t lo_part, uint32_t hi_part, bool is_visible)
+{
+    if (d == 0)
+        return o >= lo && o <= hi;
+    double first = (lo - o) / d, last = (hi - o) / d;
+    if (d < 0) {
+        double swap = first;
+        first = last, last = swap;
+        uint32_t swap_part = lo_part;
+        lo_part = hi_part, hi_part = swap_part;
+    }
+    double per = 1 / fabs(d);
+    if (first > chord->in.t)
+        chord->in =
+            (LeafHit){first, error * per + 4 * EPS_DOUBLE * fabs(first), lo_part, 1, is_visible};
+    if (last < chord->out.t)
+        chord->out =
+            (LeafHit){last, error * per + 4 * EPS_DOUBLE * fabs(last), hi_part, -1, is_visible};
+    return chord->in.t <= chord->out.t;
+}
+
+/* Turn a chord into hits. */
+static void chord_hits(const Chord *chord, LeafHits *out)
+{
+    out->count = 0;
+    out->is_inside_before = chord->in.t == -INFINITY;
+    if (chord->in.t > -INFINITY)
+        out->at[out->count++] = chord->in;
+    if (chord->out.t < INFINITY)
+        out->at[out->count++] = chord->out;
+}
+
 /* The wall x^2 + y^2 = (radius + growth z)^2 along a line: a h^2 + 2 b h + c < 0 inside. */
 typedef struct Wall {
     double a, b, c, disc;
@@ -25,7 +67,7 @@ static Wall wall_of(const ConeParams *cone, V3 f, V3 d, V3 error)
     double gx = radius * d.x - k * f.x, gy = radius * d.y - k * f.y;
     double cross = f.x * d.y - f.y * d.x;
     double g = sqrt(gx * gx + gy * gy);
-    double most = fmax(cone->bottom, cone->top);
+    double most = num_max(cone->bottom, cone->top);
     Wall w = {.a = d.x * d.x + d.y * d.y - k * k,
               .b = f.x * d.x + f.y * d.y - k * radius,
               .c = f.x * f.x + f.y * f.y - radius * radius,
@@ -38,7 +80,7 @@ static Wall wall_of(const ConeParams *cone, V3 f, V3 d, V3 error)
 static double root_error(const Wall *w)
 {
     double root = sqrt(w->disc);
-    return fmin(w->doubt / root, sqrt(2 * w->doubt / fabs(w->a)));
+    return num_min(w->doubt / root, sqrt(2 * w->doubt / fabs(w->a)));
 }
 
 /* Cut the chord at t, from above or below. */
@@ -62,7 +104,7 @@ static bool cut_wall(Chord *chord, const Wall *w, double base)
         return w->a < 0 || (w->a == 0 && w->c < 0);
     double root = sqrt(w->disc), q = -(w->b + copysign(root, w->b));
     double h0 = q / w->a, h1 = w->c / q, own = root_error(w) + 4 * EPS_DOUBLE * fabs(base);
-    double first = base + fmin(h0, h1), last = base + fmax(h0, h1);
+    double first = base + num_min(h0, h1), last = base + num_max(h0, h1);
     double first_error = own + 4 * EPS_DOUBLE * fabs(first);
     double last_error = own + 4 * EPS_DOUBLE * fabs(last);
     if (w->a > 0) {
@@ -70,8 +112,8 @@ static bool cut_wall(Chord *chord, const Wall *w, double base)
         cut_out(chord, last, last_error);
     } else if (w->a < 0) {
         /* Inside before the first root and after the last, in one of the two nappes. */
-        double before = fmin(chord->out.t, first) - chord->in.t;
-        double after = chord->out.t - fmax(chord->in.t, last);
+        double before = num_min(chord->out.t, first) - chord->in.t;
+        double after = chord->out.t - num_max(chord->in.t, last);
         if (before > after)
             cut_out(chord, first, first_error);
         else
@@ -96,8 +138,8 @@ void cone_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
     double base = -v3_dot(o, ray->d) / v3_len2(ray->d);
     V3 f = v3_mad(ray->o, base, ray->d), error = local_error(ray, base);
     Chord chord = CHORD_LINE;
-    if (!chord_cut_slab(&chord, ray->o.z, ray->d.z, error.z + PLACE_EPS * cone->height, 0,
-                        cone->height, 1, 2, !cone->is_open))
+    if (!cut_slab(&chord, ray->o.z, ray->d.z, error.z + PLACE_EPS * cone->height, 0, cone->height,
+                  1, 2, !cone->is_open))
         return;
     Wall wall = wall_of(cone, f, ray->d, error);
     if (cut_wall(&chord, &wall, base) && chord.in.t < chord.out.t)
@@ -108,14 +150,14 @@ void cone_point(const Shape *shape, uint32_t part, V3 p, LocalPoint *out)
 {
     const ConeParams *cone = &shape->u.cone;
     double growth = growth_of(cone);
-    out->error = 2 * PLACE_EPS * (part ? cone->height : fmax(cone->bottom, cone->top));
+    out->error = 2 * PLACE_EPS * (part ? cone->height : num_max(cone->bottom, cone->top));
     if (part) {
         p.z = part == 1 ? 0 : cone->height;
         out->p = p;
         out->n = v3(0, 0, part == 1 ? -1 : 1);
         return;
     }
-    p.z = fmax(0, fmin(cone->height, p.z));
+    p.z = num_max(0, num_min(cone->height, p.z));
     double radius = cone->bottom + growth * p.z, rho = sqrt(p.x * p.x + p.y * p.y);
     double pull = rho > 0 ? radius / rho : 0;
     out->p = v3(p.x * pull, p.y * pull, p.z);

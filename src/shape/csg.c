@@ -138,7 +138,7 @@ static void sweep(ShapeScratch *scratch, int base, Sweep *s)
         bool is_alone = true;
         int next = i + 1;
         for (; next < count && s->items[next].t - s->items[next].t_error <= end; next++) {
-            end = fmax(end, s->items[next].t + s->items[next].t_error);
+            end = num_max(end, s->items[next].t + s->items[next].t_error);
             is_alone &= s->items[next].child == s->items[i].child;
         }
         if (!is_alone) {

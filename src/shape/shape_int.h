@@ -76,21 +76,6 @@ static inline V3 local_error(const LocalRay *ray, double t)
                   4 * EPS_DOUBLE * (fabs(ray->o.z) + t * fabs(ray->d.z)));
 }
 
-/* The part of a line inside a convex solid. */
-typedef struct Chord {
-    LeafHit in, out; /* t may be infinite; then the other fields mean nothing */
-} Chord;
-
-#define CHORD_LINE ((Chord){{.t = -INFINITY}, {.t = INFINITY}})
-
-/* Cut a chord to the slab lo <= o + t d <= hi; lo_part and hi_part name its sides.  Returns
- * false when nothing is left. */
-bool chord_cut_slab(Chord *chord, double o, double d, double error, double lo, double hi,
-                    uint32_t lo_part, uint32_t hi_part, bool is_visible);
-
-/* Turn a chord into hits. */
-void chord_hits(const Chord *chord, LeafHits *out);
-
 /* Per kind: the crossings, and the point of one.  They may assume a leaf of their kind. */
 void sphere_hits(const Shape *shape, const LocalRay *ray, LeafHits *out);
 void sphere_point(const Shape *shape, V3 p, LocalPoint *out);

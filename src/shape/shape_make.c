@@ -23,11 +23,11 @@ static void derive_rounding(Shape *s)
         break;
     case SHAPE_TRIANGLE:
         for (int i = 0; i < 3; i++)
-            size = fmax(size, v3_sum_abs(s->u.triangle.corner[i]));
+            size = num_max(size, v3_sum_abs(s->u.triangle.corner[i]));
         break;
     case SHAPE_MESH:
         if (!bound_is_empty(s->u.mesh->bound))
-            size = fmax(v3_max_abs(s->u.mesh->bound.lo), v3_max_abs(s->u.mesh->bound.hi));
+            size = num_max(v3_max_abs(s->u.mesh->bound.lo), v3_max_abs(s->u.mesh->bound.hi));
         break;
     default:
         break; /* the others account for it per axis */

@@ -45,7 +45,7 @@ V2 sphere_uv(const Shape *shape, V3 p)
 {
     V3 n = v3_unit(v3_sub(p, shape->u.sphere.center));
     double turn = atan2(n.z, n.x) / (2 * PMS_PI);
-    return (V2){turn < 0 ? turn + 1 : turn, 0.5 + asin(fmax(-1, fmin(1, n.y))) / PMS_PI};
+    return (V2){turn < 0 ? turn + 1 : turn, 0.5 + asin(num_max(-1, num_min(1, n.y))) / PMS_PI};
 }
 
 bool sphere_is_inside(const Shape *shape, V3 p)

@@ -114,8 +114,8 @@ void torus_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
     double hi = sqrt(room), lo = -hi, lid = l.minor * (1 + 0x1p-40);
     if (l.e.y != 0) {
         double a = (-lid - l.f.y) / l.e.y, b = (lid - l.f.y) / l.e.y;
-        lo = fmax(lo, fmin(a, b));
-        hi = fmin(hi, fmax(a, b));
+        lo = num_max(lo, num_min(a, b));
+        hi = num_min(hi, num_max(a, b));
     } else if (fabs(l.f.y) > lid) {
         return;
     }
