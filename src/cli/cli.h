@@ -36,18 +36,18 @@ typedef struct Args {
     const char *value[OPTION_COUNT]; /* last argument given; "" for a flag; NULL: not given */
     const char **operands;
     int operand_count;
-    const char **outputs;            /* -o, +O */
+    const char **outputs; /* -o, +O */
     int output_count;
-    const char **libraries;          /* -L, +L */
+    const char **libraries; /* -L, +L */
     int library_count;
-    SdlDeclare *declares;            /* -D, Declare= */
+    SdlDeclare *declares; /* -D, Declare= */
     int declare_count;
     /* what POV-style switches set */
     bool has_pov_aa, is_aa_off;
-    int aa_method, aa_depth;         /* +AM, +R; 0: not given */
-    double aa_threshold, aa_jitter;  /* +A0.n, +J; negative: not given */
-    bool is_jitter_off;              /* -J */
-    int argc;                        /* as given, for the metadata */
+    int aa_method, aa_depth;        /* +AM, +R; 0: not given */
+    double aa_threshold, aa_jitter; /* +A0.n, +J; negative: not given */
+    bool is_jitter_off;             /* -J */
+    int argc;                       /* as given, for the metadata */
     char **argv;
 } Args;
 
@@ -60,7 +60,10 @@ Status args_parse(Args *args, const char *command, int argc, char **argv, bool *
 Status args_int(const Args *args, OptionId id, long lowest, long highest, long fallback, long *out);
 Status args_number(const Args *args, OptionId id, double lowest, double highest, double fallback,
                    double *out);
-static inline bool args_has(const Args *args, OptionId id) { return args->value[id] != NULL; }
+static inline bool args_has(const Args *args, OptionId id)
+{
+    return args->value[id] != NULL;
+}
 
 /* Read the scene of the command line's operand `index` with its library paths, declares and
  * size.  *seconds gets the time it took. */

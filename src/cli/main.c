@@ -1,7 +1,51 @@
-/* The program.  SPDX-License-Identifier: Apache-2.0 */
-#include "base/status.h"
+/* The program: find the command and run it.  SPDX-License-Identifier: Apache-2.0 */
+#include "cli/cli.h"
 
-int main(void)
+#include "base/work.h"
+
+#include <signal.h>
+#include <string.h>
+
+typedef struct Command {
+    const char *name;
+    int (*run)(int argc, char **argv);
+} Command;
+
+static const Command commands[] = {
+#define X(name, function, bit, operands, text) {name, function},
+#include "cli/command.def"
+#undef X
+};
+
+enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
+
+/* The first signal asks the passes to stop; a second one ends the program at once. */
+static void on_interrupt(int signal_number)
 {
-    return status_exit_code(ERR_USAGE);
+    work_interrupted = 1;
+    signal(signal_number, SIG_DFL);
+}
+
+static void catch_signals(void)
+{
+    struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = SA_RESTART};
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    /* A reader that goes away, or a full file system limit, is an error of write(), not the
+     * end of the program. */
+    signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN);
+}
+
+int main(int argc, char **argv)
+{
+    catch_signals();
+    for (int i = 0; argc > 1 && i < COMMAND_COUNT; i++) {
+        if (strcmp(argv[1], commands[i].name) != 0)
+            continue;
+        argv[1] = argv[0];
+        return commands[i].run(argc - 1, argv + 1);
+    }
+    return render_cmd(argc, argv);
 }

@@ -1,0 +1,376 @@
+/* Taking a command line apart: GNU-style options, and POV-Ray's switches beside them.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "cli/cli.h"
+#include "cli/args_int.h"
+
+#include "base/strmap.h"
+#include "base/work.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Option {
+    char letter;
+    const char *name, *argument;
+    int commands;
+    const char *text;
+} Option;
+
+static const Option options[] = {
+#define X(id, letter, name, argument, commands, text) {letter, name, argument, commands, text},
+#include "cli/option.def"
+#undef X
+};
+
+typedef struct CommandInfo {
+    const char *name, *operands, *text;
+    int bit;
+} CommandInfo;
+
+static const CommandInfo command_infos[] = {
+#define X(name, function, bit, operands, text) {name, operands, text, bit},
+#include "cli/command.def"
+#undef X
+};
+
+enum { COMMAND_COUNT = sizeof command_infos / sizeof command_infos[0], HELP_COLUMN = 26 };
+
+static const CommandInfo *command_info(const char *name)
+{
+    for (int i = 0; i < COMMAND_COUNT; i++)
+        if (strcmp(command_infos[i].name, name) == 0)
+            return &command_infos[i];
+    return &command_infos[0];
+}
+
+static void print_option(const Option *option)
+{
+    char left[64];
+    snprintf(left, sizeof left, "%s%c%s --%s%s%s", option->letter ? "-" : " ",
+             option->letter ? option->letter : ' ', option->letter ? "," : " ", option->name,
+             option->argument ? "=" : "", option->argument ? option->argument : "");
+    printf("  %-*s %s\n", HELP_COLUMN, left, option->text);
+}
+
+static void print_help(const CommandInfo *info)
+{
+    bool is_render = info->bit == CMD_RENDER;
+    printf("usage: pms %s%s%s [OPTION...] %s\n\n", is_render ? "[" : "", info->name,
+           is_render ? "]" : "", info->operands);
+    if (is_render) {
+        printf("commands (pms COMMAND --help tells more):\n");
+        for (int i = 0; i < COMMAND_COUNT; i++)
+            printf("  %-*s %s\n", HELP_COLUMN, command_infos[i].name, command_infos[i].text);
+        printf("\n");
+    } else {
+        printf("%s\n\n", info->text);
+    }
+    printf("options:\n");
+    for (int i = 0; i < OPTION_COUNT; i++)
+        if (options[i].commands & info->bit)
+            print_option(&options[i]);
+    if (info->bit & CMD_SCENE)
+        printf("\nPOV-Ray's switches work too: +Ifile +Ofile +Wn +Hn +A[0.n] -A +AMn +Rn +J[n] -J "
+               "+Ldir\n"
+               "+WTn +Qn +UA -D Declare=name=value\n");
+}
+
+/* Append to a list of strings in the arena; returns the new list or NULL. */
+static const char **list_add(Arena *arena, const char **list, int *count, const char *item)
+{
+    const char **grown = ARENA_ARRAY(arena, const char *, (size_t)*count + 1);
+    if (!grown)
+        return NULL;
+    if (*count)
+        memcpy(grown, list, (size_t)*count * sizeof *grown);
+    grown[(*count)++] = item;
+    return grown;
+}
+
+static Status keep(Args *args, const char ***list, int *count, const char *item)
+{
+    *list = list_add(args->arena, *list, count, item);
+    return *list ? OK : diag_no_memory(args->diag, "the command line");
+}
+
+Status args_add_output(Args *args, const char *path)
+{
+    return keep(args, &args->outputs, &args->output_count, path);
+}
+
+Status args_add_library(Args *args, const char *path)
+{
+    return keep(args, &args->libraries, &args->library_count, path);
+}
+
+Status args_add_operand(Args *args, const char *operand)
+{
+    return keep(args, &args->operands, &args->operand_count, operand);
+}
+
+Status args_add_declare(Args *args, const char *text)
+{
+    const char *equals = strchr(text, '=');
+    if (!equals || equals == text)
+        return diag_fail(args->diag, ERR_USAGE, "a declaration looks like NAME=VALUE, got '%s'",
+                         text);
+    SdlDeclare *grown = ARENA_ARRAY(args->arena, SdlDeclare, (size_t)args->declare_count + 1);
+    char *name = arena_strndup(args->arena, text, (size_t)(equals - text));
+    if (!grown || !name)
+        return diag_no_memory(args->diag, "the command line");
+    if (args->declare_count)
+        memcpy(grown, args->declares, (size_t)args->declare_count * sizeof *grown);
+    grown[args->declare_count++] = (SdlDeclare){name, equals + 1};
+    args->declares = grown;
+    return OK;
+}
+
+static Status set_option(Args *args, int id, const char *value)
+{
+    args->value[id] = value;
+    if (id == OPT_OUTPUT)
+        return args_add_output(args, value);
+    if (id == OPT_LIBRARY)
+        return args_add_library(args, value);
+    if (id == OPT_DECLARE)
+        return args_add_declare(args, value);
+    if (id == OPT_AA)
+        args->has_pov_aa = false;
+    return OK;
+}
+
+static Status unknown_option(const Args *args, const char *word, size_t length, int bit)
+{
+    const char *nearest = NULL;
+    int best = 4;
+    for (int i = 0; i < OPTION_COUNT; i++) {
+        int distance = word_distance(word, length, options[i].name, strlen(options[i].name), 3);
+        if ((options[i].commands & bit) && distance < best) {
+            best = distance;
+            nearest = options[i].name;
+        }
+    }
+    return diag_fail(args->diag, ERR_USAGE, "pms %s has no option --%.*s%s%s%s", args->command,
+                     (int)length, word, nearest ? "; did you mean --" : "", nearest ? nearest : "",
+                     nearest ? "?" : "");
+}
+
+/* A --name, --name=value or --name value at argv[*i]. */
+static Status parse_long(Args *args, int bit, int argc, char **argv, int *i)
+{
+    const char *word = argv[*i] + 2;
+    const char *equals = strchr(word, '=');
+    size_t length = equals ? (size_t)(equals - word) : strlen(word);
+    for (int id = 0; id < OPTION_COUNT; id++) {
+        const Option *option = &options[id];
+        if (!(option->commands & bit) || strlen(option->name) != length ||
+            memcmp(option->name, word, length) != 0)
+            continue;
+        if (!option->argument && equals)
+            return diag_fail(args->diag, ERR_USAGE, "--%s takes no value", option->name);
+        if (!option->argument)
+            return set_option(args, id, "");
+        if (!equals && *i + 1 >= argc)
+            return diag_fail(args->diag, ERR_USAGE, "--%s wants %s after it", option->name,
+                             option->argument);
+        return set_option(args, id, equals ? equals + 1 : argv[++*i]);
+    }
+    return unknown_option(args, word, length, bit);
+}
+
+/* A -x, -xvalue or -x value at argv[*i]. */
+static Status parse_short(Args *args, int bit, int argc, char **argv, int *i)
+{
+    const char *word = argv[*i];
+    for (int id = 0; id < OPTION_COUNT; id++) {
+        const Option *option = &options[id];
+        if (!(option->commands & bit) || option->letter != word[1])
+            continue;
+        if (!option->argument && word[2])
+            break;
+        if (!option->argument)
+            return set_option(args, id, "");
+        if (word[2])
+            return set_option(args, id, word + 2);
+        if (*i + 1 >= argc)
+            return diag_fail(args->diag, ERR_USAGE, "-%c wants %s after it", option->letter,
+                             option->argument);
+        return set_option(args, id, argv[++*i]);
+    }
+    return diag_fail(args->diag, ERR_USAGE, "pms %s has no option %s (--help lists them)",
+                     args->command, word);
+}
+
+static Status parse_word(Args *args, int bit, int argc, char **argv, int *i)
+{
+    const char *word = argv[*i];
+    bool reads_scene = (bit & CMD_SCENE) != 0;
+    bool is_taken = false;
+    if (word[0] == '-' && word[1] == '-')
+        return parse_long(args, bit, argc, argv, i);
+    if (reads_scene)
+        TRY(pov_switch(args, word, &is_taken));
+    if (is_taken)
+        return OK;
+    if (word[0] == '-' && word[1])
+        return parse_short(args, bit, argc, argv, i);
+    return args_add_operand(args, word);
+}
+
+Status args_parse(Args *args, const char *command, int argc, char **argv, bool *is_done)
+{
+    const CommandInfo *info = command_info(command);
+    args->command = command;
+    args->argc = argc;
+    args->argv = argv;
+    args->aa_threshold = args->aa_jitter = -1;
+    *is_done = false;
+    bool has_ended = false; /* after --, all words are operands */
+    for (int i = 1; i < argc; i++) {
+        if (has_ended)
+            TRY(args_add_operand(args, argv[i]));
+        else if (strcmp(argv[i], "--") == 0)
+            has_ended = true;
+        else
+            TRY(parse_word(args, info->bit, argc, argv, &i));
+    }
+    if (args_has(args, OPT_HELP)) {
+        print_help(info);
+        *is_done = true;
+    } else if (args_has(args, OPT_VERSION)) {
+        printf("pms %s\n", PMS_VERSION);
+        *is_done = true;
+    }
+    return OK;
+}
+
+Status args_number(const Args *args, OptionId id, double lowest, double highest, double fallback,
+                   double *out)
+{
+    const char *text = args->value[id];
+    *out = fallback;
+    if (!text)
+        return OK;
+    char *end;
+    *out = strtod(text, &end);
+    if (end == text || *end || !(*out >= lowest && *out <= highest))
+        return diag_fail(args->diag, ERR_USAGE, "--%s wants a number from %g to %g, got '%s'",
+                         options[id].name, lowest, highest, text);
+    return OK;
+}
+
+Status args_int(const Args *args, OptionId id, long lowest, long highest, long fallback, long *out)
+{
+    const char *text = args->value[id];
+    *out = fallback;
+    if (!text)
+        return OK;
+    char *end;
+    errno = 0;
+    *out = strtol(text, &end, 10);
+    if (end == text || *end || errno || *out < lowest || *out > highest)
+        return diag_fail(args->diag, ERR_USAGE,
+                         "--%s wants a whole number from %ld to %ld, got '%s'", options[id].name,
+                         lowest, highest, text);
+    return OK;
+}
+
+enum { WIDTH_DEFAULT = 640, HEIGHT_DEFAULT = 480, SAMPLES_MAX = 1 << 20 };
+
+static Status read_size(const Args *args, int *width, int *height)
+{
+    long w, h;
+    TRY(args_int(args, OPT_WIDTH, 1, IMAGE_SIDE_MAX, WIDTH_DEFAULT, &w));
+    TRY(args_int(args, OPT_HEIGHT, 1, IMAGE_SIDE_MAX, HEIGHT_DEFAULT, &h));
+    *width = (int)w;
+    *height = (int)h;
+    return OK;
+}
+
+Status args_load_scene(const Args *args, int index, Scene **out, double *seconds)
+{
+    SdlOptions sdl = {.library_paths = args->libraries,
+                      .library_path_count = args->library_count,
+                      .declares = args->declares,
+                      .declare_count = args->declare_count};
+    long threads;
+    TRY(read_size(args, &sdl.width, &sdl.height));
+    TRY(args_int(args, OPT_MAX_TOKENS, 1, LONG_MAX, SDL_MAX_TOKENS, &sdl.max_tokens));
+    TRY(args_int(args, OPT_THREADS, 1, WORK_THREADS_MAX, work_thread_count(), &threads));
+    sdl.threads = (int)threads;
+    double start = clock_wall();
+    Status status = sdl_load(args->diag, args->operands[index], &sdl, out);
+    *seconds = clock_wall() - start;
+    return status;
+}
+
+static Status read_layers(const Args *args, unsigned *out)
+{
+    static const struct {
+        const char *name;
+        unsigned bit;
+    } layers[] = {{"direct", LAYER_DIRECT},
+                  {"caustic", LAYER_CAUSTIC},
+                  {"indirect", LAYER_INDIRECT},
+                  {"Z", LAYER_Z},
+                  {"N", LAYER_N},
+                  {"albedo", LAYER_ALBEDO}};
+    const char *text = args->value[OPT_LAYERS];
+    while (text && *text) {
+        size_t length = strcspn(text, ",");
+        unsigned bit = 0;
+        for (size_t i = 0; i < sizeof layers / sizeof layers[0]; i++)
+            if (strlen(layers[i].name) == length && memcmp(layers[i].name, text, length) == 0)
+                bit = layers[i].bit;
+        if (!bit)
+            return diag_fail(args->diag, ERR_USAGE,
+                             "there is no layer '%.*s'; there are direct, caustic, indirect, Z, N "
+                             "and albedo",
+                             (int)length, text);
+        *out |= bit;
+        text += length + (text[length] == ',');
+    }
+    return OK;
+}
+
+static Status read_antialiasing(const Args *args, RenderOptions *out)
+{
+    long samples;
+    TRY(args_int(args, OPT_AA, 1, SAMPLES_MAX, 0, &samples));
+    if (args->has_pov_aa) {
+        out->aa = args->aa_method == 2 ? AA_POV2 : AA_POV1;
+    } else if (samples) {
+        out->aa = AA_UNIFORM;
+        out->samples = (int)samples;
+    }
+    if (args->aa_threshold >= 0)
+        out->aa_threshold = args->aa_threshold;
+    if (args->aa_depth)
+        out->aa_depth = args->aa_depth;
+    if (args->aa_jitter >= 0)
+        out->aa_jitter = args->aa_jitter;
+    out->aa_has_jitter = !args->is_jitter_off;
+    return OK;
+}
+
+Status args_render_options(const Args *args, RenderOptions *out)
+{
+    long threads, seed, quality;
+    *out = RENDER_OPTIONS_DEFAULT;
+    TRY(read_size(args, &out->width, &out->height));
+    TRY(args_int(args, OPT_THREADS, 1, WORK_THREADS_MAX, work_thread_count(), &threads));
+    TRY(args_int(args, OPT_SEED, 0, LONG_MAX, 0, &seed));
+    TRY(args_int(args, OPT_QUALITY, 0, 11, 9, &quality));
+    TRY(read_layers(args, &out->layers));
+    TRY(read_antialiasing(args, out));
+    out->threads = (int)threads;
+    out->seed = (uint64_t)seed;
+    out->plan.quality = (int)(quality > 9 ? 9 : quality);
+    out->plan.has_indirect = args_has(args, OPT_GI);
+    out->plan.has_no_photons = args_has(args, OPT_NO_PHOTONS);
+    out->has_alpha = args_has(args, OPT_ALPHA);
+    return OK;
+}

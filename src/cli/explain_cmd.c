@@ -1,0 +1,142 @@
+/* pms explain: which effects a scene calls for, who asked, and what each light gets.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "cli/cli.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+typedef struct Explanation {
+    const Scene *scene;
+    Plan plan;
+    PhotonBooks books;
+} Explanation;
+
+static void print_place(FILE *file, Span span)
+{
+    Place place = span_place(span);
+    if (span.source)
+        fprintf(file, "%s:%d:%d", span.source->path, place.line, place.column);
+}
+
+static void print_features(const Explanation *e)
+{
+    printf("%-20s %-4s %s\n", "effect", "on", "why");
+    for (int i = 0; i < FEATURE_COUNT; i++) {
+        const PlanRow *row = &e->plan.rows[i];
+        printf("%-20s %-4s %s", feature_name((FeatureId)i), row->is_on ? "yes" : "no", row->reason);
+        if (row->why.source)
+            printf(" (");
+        print_place(stdout, row->why);
+        printf("%s\n", row->why.source ? ")" : "");
+    }
+}
+
+static void print_lights(const Explanation *e, const char *map, const LightBooks *books, long total)
+{
+    if (!books)
+        return;
+    printf("\n%s photons", map);
+    if (total > 0)
+        printf(", %ld in all", total);
+    printf("\n%-20s %12s %8s %10s\n", "light", "power", "share", "photons");
+    for (int i = 0; i < e->scene->light_count; i++)
+        printf("%-20s %12.5g %7.2f%% %10" PRIu64 "\n", e->scene->lights[i].name, books[i].power,
+               100 * books[i].share, books[i].budget);
+}
+
+static void print_text(const Explanation *e)
+{
+    printf("scene %s: %u objects, %d lights\n\n", e->scene->path, e->scene->object_count,
+           e->scene->light_count);
+    print_features(e);
+    print_lights(e, "caustic", e->books.caustic, e->plan.caustic_photons);
+    print_lights(e, "global", e->books.global, e->plan.global_photons);
+    if (!e->books.caustic && !e->books.global)
+        printf("\nno photon pass\n");
+}
+
+static void print_json_feature(const Explanation *e, int id)
+{
+    const PlanRow *row = &e->plan.rows[id];
+    printf("%s\n    {\"name\": \"%s\", \"on\": %s, \"reason\": ", id ? "," : "",
+           feature_name((FeatureId)id), row->is_on ? "true" : "false");
+    json_string(stdout, row->reason);
+    if (row->why.source) {
+        Place place = span_place(row->why);
+        printf(", \"file\": ");
+        json_string(stdout, row->why.source->path);
+        printf(", \"line\": %d, \"column\": %d", place.line, place.column);
+    }
+    putchar('}');
+}
+
+static void print_json_lights(const Explanation *e, const char *map, const LightBooks *books)
+{
+    printf(",\n  \"%s_photons\": [", map);
+    for (int i = 0; books && i < e->scene->light_count; i++) {
+        printf("%s\n    {\"light\": ", i ? "," : "");
+        json_string(stdout, e->scene->lights[i].name);
+        printf(", \"power\": ");
+        json_number(stdout, books[i].power);
+        printf(", \"share\": ");
+        json_number(stdout, books[i].share);
+        printf(", \"photons\": %" PRIu64 "}", books[i].budget);
+    }
+    printf("%s]", books ? "\n  " : "");
+}
+
+static void print_json(const Explanation *e)
+{
+    printf("{\n  \"scene\": ");
+    json_string(stdout, e->scene->path);
+    printf(",\n  \"features\": [");
+    for (int i = 0; i < FEATURE_COUNT; i++)
+        print_json_feature(e, i);
+    printf("\n  ]");
+    print_json_lights(e, "caustic", e->books.caustic);
+    print_json_lights(e, "global", e->books.global);
+    printf("\n}\n");
+}
+
+static Status explain_scene(const Args *args, const Scene *scene)
+{
+    RenderOptions options;
+    Explanation e = {.scene = scene};
+    TRY(args_render_options(args, &options));
+    TRY(render_explain(scene, &options, args->diag, args->arena, &e.plan, &e.books));
+    if (args_has(args, OPT_JSON))
+        print_json(&e);
+    else
+        print_text(&e);
+    photon_books_done(&e.books);
+    return OK;
+}
+
+static Status explain(Args *args, int argc, char **argv)
+{
+    bool is_done;
+    TRY(args_parse(args, "explain", argc, argv, &is_done));
+    if (is_done)
+        return OK;
+    if (args->operand_count != 1)
+        return diag_fail(args->diag, ERR_USAGE, "pms explain wants one scene file, got %d",
+                         args->operand_count);
+    Scene *scene;
+    double seconds;
+    TRY(args_load_scene(args, 0, &scene, &seconds));
+    Status status = explain_scene(args, scene);
+    scene_free(scene);
+    return status;
+}
+
+int explain_cmd(int argc, char **argv)
+{
+    Diag diag;
+    diag_init(&diag, NULL, NULL);
+    Args args = {.arena = arena_new(), .diag = &diag};
+    Status status =
+        args.arena ? explain(&args, argc, argv) : diag_no_memory(&diag, "the command line");
+    arena_free(args.arena);
+    diag_done(&diag);
+    return status_exit_code(status);
+}

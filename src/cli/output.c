@@ -1,0 +1,203 @@
+/* From a rendered image to files: working gamma, OpenEXR, and PNG through OpenColorIO.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "cli/cli.h"
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "image/exr.h"
+#include "image/ocio.h"
+#include "image/png_file.h"
+
+#include <math.h>
+#include <string.h>
+#include <strings.h>
+
+typedef enum FileKind { FILE_UNKNOWN, FILE_EXR, FILE_PNG } FileKind;
+
+static FileKind kind_of(const char *path)
+{
+    const char *extension = path_extension(path);
+    if (strcasecmp(extension, "exr") == 0)
+        return FILE_EXR;
+    return strcasecmp(extension, "png") == 0 ? FILE_PNG : FILE_UNKNOWN;
+}
+
+Status output_preflight(const Args *args, const char *const *paths, int path_count)
+{
+    for (int i = 0; i < path_count; i++) {
+        if (kind_of(paths[i]) == FILE_UNKNOWN)
+            return diag_fail(args->diag, ERR_USAGE,
+                             "cannot tell the format of '%s': it should end in .exr or .png",
+                             paths[i]);
+        OutFile out;
+        TRY(out_begin(args->diag, paths[i], &out));
+        out_discard(&out);
+    }
+    return OK;
+}
+
+/* Inverse of the sRGB curve.  Source: IEC 61966-2-1. */
+static float srgb_decode(float v)
+{
+    return v < 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
+}
+
+static float linear_of(const SceneSettings *settings, float v)
+{
+    if (settings->is_gamma_off)
+        return srgb_decode(v);
+    return powf(fmaxf(v, 0), (float)settings->assumed_gamma);
+}
+
+static bool is_linear(const SceneSettings *settings)
+{
+    return !settings->is_gamma_off && fabs(settings->assumed_gamma - 1) <= 0.01;
+}
+
+/* Each light layer is scaled as the beauty is, channel by channel: they still add up. */
+static void linearise_pixel(const SceneSettings *settings, Image *image, size_t pixel)
+{
+    float *beauty = image->layers[0].pixels + 4 * pixel;
+    for (int c = 0; c < 3; c++) {
+        float linear = linear_of(settings, beauty[c]);
+        float factor = beauty[c] != 0 ? linear / beauty[c] : 1;
+        for (int i = 1; i < image->layer_count; i++) {
+            ImageLayer *layer = &image->layers[i];
+            if (strcmp(layer->channels, "RGB") == 0 && strcmp(layer->name, "albedo") != 0)
+                layer->pixels[3 * pixel + (size_t)c] *= factor;
+        }
+        beauty[c] = linear;
+    }
+}
+
+void output_linearise(const Scene *scene, Image *image)
+{
+    if (is_linear(&scene->settings))
+        return;
+    size_t pixels = (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < pixels; i++)
+        linearise_pixel(&scene->settings, image, i);
+}
+
+enum { META_MAX = 16, META_TEXT = 2048 };
+
+/* The header fields, with room for their texts. */
+typedef struct Header {
+    MetaItem items[META_MAX];
+    char texts[META_MAX][META_TEXT];
+    Meta meta;
+} Header;
+
+static void header_add(Header *header, const char *name, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+static void header_add(Header *header, const char *name, const char *format, ...)
+{
+    if (header->meta.count >= META_MAX)
+        return;
+    char *text = header->texts[header->meta.count];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, META_TEXT, format, list);
+    va_end(list);
+    header->items[header->meta.count++] = (MetaItem){name, text};
+    header->meta.items = header->items;
+}
+
+static void header_fill(Header *header, const Args *args, const Scene *scene,
+                        const RenderResult *result)
+{
+    char line[META_TEXT] = "";
+    size_t length = 0;
+    for (int i = 0; i < args->argc && length < sizeof line; i++)
+        length += (size_t)snprintf(line + length, sizeof line - length, "%s%s", i ? " " : "",
+                                   args->argv[i]);
+    header_add(header, "software", "pms %s", PMS_VERSION);
+    header_add(header, "pms.scene", "%s", scene->path);
+    header_add(header, "pms.command", "%s", line);
+    header_add(header, "pms.seed", "%s", args->value[OPT_SEED] ? args->value[OPT_SEED] : "0");
+    header_add(header, "pms.photons", "caustic %llu, global %llu",
+               (unsigned long long)result->stats.count[STAT_PHOTONS_CAUSTIC],
+               (unsigned long long)result->stats.count[STAT_PHOTONS_GLOBAL]);
+    header_add(header, "pms.settings",
+               "assumed_gamma %g, max_trace_level %d, adc_bailout %g, gather %d %d",
+               scene->settings.assumed_gamma, scene->settings.max_trace_level,
+               scene->settings.adc_bailout, scene->settings.photons.gather_min,
+               scene->settings.photons.gather_max);
+    char seconds[META_TEXT] = "";
+    length = 0;
+    for (int i = 0; i < PHASE_COUNT; i++)
+        length += (size_t)snprintf(seconds + length, sizeof seconds - length, "%s%s %.3f",
+                                   i ? ", " : "", phase_name((PhaseId)i), result->stats.seconds[i]);
+    header_add(header, "pms.seconds", "%s", seconds);
+}
+
+/* Colours are stored with alpha multiplied in; PNG wants them without. */
+static void unpremultiply(float *pixels, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        float *p = pixels + 4 * i;
+        for (int c = 0; c < 3 && p[3] > 0; c++)
+            p[c] /= p[3];
+    }
+}
+
+static void drop_alpha(float *pixels, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        memmove(pixels + 3 * i, pixels + 4 * i, 3 * sizeof(float));
+}
+
+static Status show(const Args *args, float *pixels, size_t count, int channels, bool *is_srgb)
+{
+    Ocio *ocio;
+    TRY(ocio_new(args->diag, args->value[OPT_OCIO], &ocio));
+    const char *display = args->value[OPT_DISPLAY], *view = args->value[OPT_VIEW];
+    Status status = ocio_apply(args->diag, ocio, display, view, pixels, count, channels);
+    *is_srgb = status == OK && ocio_is_srgb(ocio, display, view);
+    ocio_free(ocio);
+    return status;
+}
+
+static Status write_png(const Args *args, const Image *image, const char *path, const Meta *meta)
+{
+    long bits;
+    TRY(args_int(args, OPT_BITS, 8, 16, 8, &bits));
+    if (bits != 8 && bits != 16)
+        return diag_fail(args->diag, ERR_USAGE, "--bits wants 8 or 16, got %ld", bits);
+    size_t count = (size_t)image->width * (size_t)image->height;
+    float *pixels = mem_array(count, 4 * sizeof(float));
+    if (!pixels)
+        return diag_no_memory(args->diag, path);
+    memcpy(pixels, image->layers[0].pixels, count * 4 * sizeof(float));
+    int channels = args_has(args, OPT_ALPHA) ? 4 : 3;
+    if (channels == 4)
+        unpremultiply(pixels, count);
+    else
+        drop_alpha(pixels, count);
+    bool is_srgb = false;
+    Status status = show(args, pixels, count, channels, &is_srgb);
+    if (status == OK)
+        status = png_write(args->diag, path, image->width, image->height, channels, pixels,
+                           (int)bits, is_srgb, meta);
+    mem_free(pixels);
+    return status;
+}
+
+Status output_write(const Args *args, const Scene *scene, RenderResult *result,
+                    const char *const *paths, int path_count)
+{
+    Header *header = ARENA_NEW(args->arena, Header);
+    if (!header)
+        return diag_no_memory(args->diag, "the image header");
+    header_fill(header, args, scene, result);
+    output_linearise(scene, &result->image);
+    for (int i = 0; i < path_count; i++) {
+        if (kind_of(paths[i]) == FILE_EXR)
+            TRY(exr_write(args->diag, paths[i], &result->image, &header->meta,
+                          (ExrOptions){args_has(args, OPT_HALF)}));
+        else
+            TRY(write_png(args, &result->image, paths[i], &header->meta));
+    }
+    return OK;
+}

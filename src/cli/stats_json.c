@@ -1,0 +1,80 @@
+/* --stats: the counters, times and photon books of a render, as JSON.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "cli/cli.h"
+
+#include <inttypes.h>
+
+static void print_counters(FILE *file, const Stats *stats)
+{
+    fputs("  \"counters\": {", file);
+    for (int i = 0; i < STAT_COUNT; i++)
+        fprintf(file, "%s\n    \"%s\": %" PRIu64, i ? "," : "", stat_name((StatId)i),
+                stats->count[i]);
+    fputs("\n  },\n", file);
+}
+
+static void print_seconds(FILE *file, const Stats *stats)
+{
+    fputs("  \"seconds\": {", file);
+    for (int i = 0; i < PHASE_COUNT; i++) {
+        fprintf(file, "%s\n    \"%s\": ", i ? "," : "", phase_name((PhaseId)i));
+        json_number(file, stats->seconds[i]);
+    }
+    fputs("\n  },\n", file);
+}
+
+static void print_flux(FILE *file, const char *name, Rgb flux)
+{
+    fprintf(file, ", \"%s\": [%.9g, %.9g, %.9g]", name, (double)flux.r, (double)flux.g,
+            (double)flux.b);
+}
+
+static void print_book(FILE *file, const char *light, const LightBooks *book)
+{
+    fputs("\n      {\"light\": ", file);
+    json_string(file, light);
+    fputs(", \"power\": ", file);
+    json_number(file, book->power);
+    fputs(", \"share\": ", file);
+    json_number(file, book->share);
+    fprintf(file,
+            ", \"emitted\": %" PRIu64 ", \"stored_paths\": %" PRIu64 ", \"absorbed\": %" PRIu64
+            ", \"escaped\": %" PRIu64 ", \"cut\": %" PRIu64 ", \"stored\": %" PRIu64,
+            book->emitted, book->stored_paths, book->absorbed, book->escaped, book->cut,
+            book->stored);
+    print_flux(file, "flux_emitted", book->flux_emitted);
+    print_flux(file, "flux_stored", book->flux_stored);
+    print_flux(file, "flux_absorbed", book->flux_absorbed);
+    print_flux(file, "flux_escaped", book->flux_escaped);
+    print_flux(file, "flux_cut", book->flux_cut);
+    fputc('}', file);
+}
+
+static void print_books(FILE *file, const char *name, const Scene *scene, const LightBooks *books,
+                        uint64_t hash)
+{
+    fprintf(file, "    \"%s\": {\"hash\": \"%016" PRIx64 "\", \"lights\": [", name, hash);
+    for (int i = 0; books && i < scene->light_count; i++) {
+        fputs(i ? "," : "", file);
+        print_book(file, scene->lights[i].name, &books[i]);
+    }
+    fputs("]}", file);
+}
+
+void stats_print_json(FILE *file, const Scene *scene, const RenderResult *result)
+{
+    fputs("{\n  \"program\": \"pms " PMS_VERSION "\",\n  \"scene\": ", file);
+    json_string(file, scene->path);
+    fputs(",\n", file);
+    print_seconds(file, &result->stats);
+    print_counters(file, &result->stats);
+    fputs("  \"features\": {", file);
+    for (int i = 0; i < FEATURE_COUNT; i++)
+        fprintf(file, "%s\n    \"%s\": %s", i ? "," : "", feature_name((FeatureId)i),
+                plan_has(&result->plan, (FeatureId)i) ? "true" : "false");
+    fputs("\n  },\n  \"photon_maps\": {\n", file);
+    print_books(file, "caustic", scene, result->books.caustic, result->caustic_hash);
+    fputs(",\n", file);
+    print_books(file, "global", scene, result->books.global, result->global_hash);
+    fputs("\n  }\n}\n", file);
+}
