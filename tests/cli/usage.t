@@ -1,0 +1,56 @@
+#!/bin/sh
+# Usage: help, version, options and switches, good and bad.
+. "$(dirname "$0")/tap.sh"
+cat >"$T/s.pms" <<'S'
+#version 3.7;
+global_settings { assumed_gamma 1 }
+camera { location <0,0,-3> look_at 0 }
+light_source { <2,3,-4>, 1 }
+sphere { 0, 1 pigment { rgb <1,.5,.2> } }
+S
+
+run "$PMS" --help
+[ "$code" -eq 0 ] && grep -q "usage: pms" "$T/out" && [ ! -s "$T/err" ]
+ok $? "--help goes to standard output"
+for command in check explain compare validate; do
+    run "$PMS" $command --help
+    [ "$code" -eq 0 ] && grep -q "usage: pms $command" "$T/out"
+    ok $? "$command --help"
+done
+run "$PMS" --version
+[ "$code" -eq 0 ] && grep -q "^pms [0-9]" "$T/out"
+ok $? "--version"
+
+fails 2 "wants one scene file" "no scene" "$PMS"
+fails 2 "wants one scene file, got 2" "two scenes" "$PMS" a.pms b.pms
+fails 2 "no option --wdith.*did you mean --width" "a slip of the fingers" "$PMS" --wdith=3 "$T/s.pms"
+fails 2 "no option -x" "unknown letter" "$PMS" -x "$T/s.pms"
+fails 2 "does not know the switch \+ZZ" "unknown switch" "$PMS" +ZZ "$T/s.pms"
+fails 2 "whole number from 1 to 65536" "zero-size image" "$PMS" --width=0 "$T/s.pms"
+fails 2 "whole number from 1 to 65536" "zero-size image by switch" "$PMS" +H0 "$T/s.pms"
+fails 2 "whole number" "width is not a number" "$PMS" --width=wide "$T/s.pms"
+fails 2 "wants N after it" "argument missing" "$PMS" "$T/s.pms" --width
+fails 2 "takes no value" "flag with a value" "$PMS" --half=1 "$T/s.pms"
+fails 2 "NAME=VALUE" "bad declaration" "$PMS" --declare=3 "$T/s.pms"
+fails 2 "no layer 'depth'" "unknown layer" "$PMS" --layers=depth "$T/s.pms"
+fails 2 "cannot tell the format" "unknown extension" "$PMS" -o "$T/a.bmp" "$T/s.pms"
+fails 3 "cannot write" "output folder missing" "$PMS" -o "$T/none/a.png" "$T/s.pms"
+fails 3 "is a directory" "output is a folder" sh -c "mkdir -p '$T/d.png'; exec '$PMS' -o '$T/d.png' '$T/s.pms'"
+fails 2 "no display|display" "unknown display" "$PMS" --display=nowhere -w 8 --height=8 -o "$T/a.png" "$T/s.pms"
+fails 3 "nowhere.ocio" "missing colour configuration" "$PMS" --ocio="$T/nowhere.ocio" -w 8 --height=8 -o "$T/a.png" "$T/s.pms"
+[ ! -e "$T/a.png" ] && ! ls "$T"/*.part* >/dev/null 2>&1
+ok $? "nothing half-written is left"
+
+run "$PMS" "+I$T/s.pms" "+O$T/pov" +W32 +H24 +A0.3 +R2 -J +WT2 -D Declare=K=3
+[ "$code" -eq 0 ] && [ -s "$T/pov.png" ]
+ok $? "POV-Ray's command line"
+run "$PMS" "$T/s.pms" -w 32 --height 24 --aa 4 -o "$T/a.exr" -o "$T/a.png" --stats=- --progress=json
+[ "$code" -eq 0 ] && [ -s "$T/a.exr" ] && [ -s "$T/a.png" ] && grep -q '"film.pixels": 768' "$T/out" &&
+    grep -q '"percent"' "$T/err" && ! grep -q '"percent": 100' "$T/err"
+ok $? "two outputs, statistics, progress that never says 100 early"
+(cd "$T" && run "$PMS" s.pms -w 8 --height 6 && [ "$code" -eq 0 ] && [ -s s.exr ] && [ -s s.png ])
+ok $? "default output names"
+run "$PMS" "$T/s.pms" -w 8 --height 6 --bits=16 --half --layers=direct,caustic,indirect,Z,N,albedo -o "$T/h.exr" -o "$T/h.png"
+[ "$code" -eq 0 ]
+ok $? "half, 16 bits, layers"
+plan
