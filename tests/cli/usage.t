@@ -12,7 +12,7 @@ S
 run "$PMS" --help
 [ "$code" -eq 0 ] && grep -q "usage: pms" "$T/out" && [ ! -s "$T/err" ]
 ok $? "--help goes to standard output"
-for command in check explain compare validate; do
+for command in check explain; do
     run "$PMS" $command --help
     [ "$code" -eq 0 ] && grep -q "usage: pms $command" "$T/out"
     ok $? "$command --help"
