@@ -119,19 +119,19 @@ void interiors_at(const Tracer *tracer, V3 p, Interiors *out)
 {
     double volumes[INTERIORS_MAX];
     out->count = 0;
-    for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
+    for (uint32_t k = 0; k < tracer->clear_count && out->count < INTERIORS_MAX; k++) {
+        uint32_t i = tracer->clear[k];
         const Object *object = &tracer->scene->objects[i];
-        if (out->count == INTERIORS_MAX || !shape_is_solid(object->shape) ||
-            !shape_is_inside(object->shape, p))
+        if (!shape_is_inside(object->shape, p))
             continue;
         double size = volume(object);
         int at = out->count;
         while (at > 0 && volumes[at - 1] < size)
             at--;
-        for (int k = out->count++; k > at; k--) {
-            volumes[k] = volumes[k - 1];
-            out->in[k] = out->in[k - 1];
-            out->object[k] = out->object[k - 1];
+        for (int j = out->count++; j > at; j--) {
+            volumes[j] = volumes[j - 1];
+            out->in[j] = out->in[j - 1];
+            out->object[j] = out->object[j - 1];
         }
         const Shape *leaf = leaf_around(object->shape, p);
         volumes[at] = size;

@@ -82,7 +82,8 @@ typedef struct Interiors {
         object[INTERIORS_MAX]; /* the surface's object: entering and leaving are paired by it */
 } Interiors;
 
-/* Fill `out` with the interiors that contain p (for a camera or light inside glass). */
+/* Fill `out` with the interiors that contain p (for a camera or light inside glass): those of
+ * objects that let light through, by size. */
 void interiors_at(const Tracer *tracer, V3 p, Interiors *out);
 
 /* One layer of a surface, evaluated.  Colours are pov-facts' symbols: see finish arithmetic in

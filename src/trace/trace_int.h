@@ -29,6 +29,8 @@ struct Tracer {
     uint32_t *index_objects; /* item of the index to object; ascending */
     uint32_t *unbounded;     /* objects apart, ascending */
     uint32_t unbounded_count;
+    uint32_t *clear; /* solids that may let light through, ascending */
+    uint32_t clear_count;
     Bound bound;
 };
 

@@ -8,7 +8,7 @@
 
 /* Which surfaces the leaves of a shape have. */
 typedef struct LeafSummary {
-    bool may_transmit, may_block, has_filter_besides_targets, is_closed;
+    bool may_transmit, has_filter_besides_targets, is_closed;
 } LeafSummary;
 
 static bool is_refracting_target(const Surface *surface)
@@ -41,18 +41,17 @@ static void summarize(const Scene *scene, const Shape *shape, LeafSummary *sum)
         return;
     const Surface *surface = &scene->surfaces[shape->surface];
     sum->is_closed &= is_closed_leaf(shape);
-    if (!surface->may_transmit)
-        sum->may_block = true;
-    else if (!is_refracting_target(surface))
+    if (surface->may_transmit && !is_refracting_target(surface))
         sum->has_filter_besides_targets = true;
     sum->may_transmit |= surface->may_transmit;
 }
 
-static void describe_object(const Scene *scene, const Plan *plan, const Object *object,
-                            TracedObject *out)
+static void describe_object(Tracer *tracer, uint32_t i)
 {
+    const Object *object = &tracer->scene->objects[i];
+    TracedObject *out = &tracer->objects[i];
     LeafSummary sum = {.is_closed = true};
-    summarize(scene, object->shape, &sum);
+    summarize(tracer->scene, object->shape, &sum);
     out->shape = object->shape;
     out->is_closed = sum.is_closed;
     out->is_hidden[RAY_CAMERA] = object->no_image;
@@ -61,10 +60,12 @@ static void describe_object(const Scene *scene, const Plan *plan, const Object *
     out->is_hidden[RAY_REFLECTED] = object->no_reflection;
     if (object->no_shadow)
         out->shadow = SHADOW_NONE;
-    else if (!sum.may_transmit || !plan_has(plan, FEATURE_TRANSPARENT_SHADOWS))
+    else if (!sum.may_transmit || !plan_has(tracer->plan, FEATURE_TRANSPARENT_SHADOWS))
         out->shadow = SHADOW_BLOCK;
     else
         out->shadow = sum.has_filter_besides_targets ? SHADOW_FILTER : SHADOW_TARGET;
+    if (sum.may_transmit && shape_is_solid(object->shape))
+        tracer->clear[tracer->clear_count++] = i;
 }
 
 /* Sort the objects into those with a box and those without; an empty box is never met. */
@@ -109,12 +110,13 @@ Status tracer_new(const Scene *scene, const Plan *plan, int threads, Diag *diag,
     tracer->plan = plan;
     tracer->bound = BOUND_EMPTY;
     tracer->objects = mem_array((size_t)scene->object_count + 1, sizeof *tracer->objects);
-    if (!tracer->objects) {
+    tracer->clear = mem_array((size_t)scene->object_count + 1, sizeof *tracer->clear);
+    if (!tracer->objects || !tracer->clear) {
         tracer_free(tracer);
         return diag_no_memory(diag, "the tracer");
     }
     for (uint32_t i = 0; i < scene->object_count; i++)
-        describe_object(scene, plan, &scene->objects[i], &tracer->objects[i]);
+        describe_object(tracer, i);
     for (int i = 0; i < scene->light_count; i++)
         tracer->bound = bound_add(tracer->bound, scene->lights[i].location);
     if (bound_is_empty(tracer->bound))
@@ -135,6 +137,7 @@ void tracer_free(Tracer *tracer)
     box_index_free(tracer->index);
     mem_free(tracer->index_objects);
     mem_free(tracer->unbounded);
+    mem_free(tracer->clear);
     mem_free(tracer->objects);
     mem_free(tracer);
 }
