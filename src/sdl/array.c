@@ -104,11 +104,10 @@ static void take_dimensions(Parser *p, Array *array)
     double count = 1;
     int dimensions = 0;
     array->size[dimensions++] = take_size(p, &count);
-    while (dimensions < ARRAY_DIMENSION_MAX && peek_operator(p)->kind == TOKEN_LBRACKET)
+    while (dimensions < ARRAY_DIMENSION_MAX && raw_peek(p)->kind == TOKEN_LBRACKET)
         array->size[dimensions++] = take_size(p, &count);
-    if (peek_operator(p)->kind == TOKEN_LBRACKET)
-        parse_fail(p, parse_peek(p)->span, "an array has at most %d dimensions",
-                   ARRAY_DIMENSION_MAX);
+    if (raw_peek(p)->kind == TOKEN_LBRACKET)
+        parse_fail(p, raw_peek(p)->span, "an array has at most %d dimensions", ARRAY_DIMENSION_MAX);
     array->dimension_count = dimensions;
     array->item_count = (size_t)count;
 }
@@ -119,7 +118,7 @@ void parse_array(Parser *p, Value *out)
     Array *array = value_alloc(p, sizeof *array);
     take_dimensions(p, array);
     array->items = value_alloc(p, array->item_count * sizeof *array->items);
-    if (peek_operator(p)->kind == TOKEN_LBRACE) {
+    if (raw_peek(p)->kind == TOKEN_LBRACE) {
         size_t place = 0;
         HoldState outer = hold_aside(p);
         take_items(p, array, 0, &place);

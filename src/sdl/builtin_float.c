@@ -273,7 +273,7 @@ static double call_of_array(Parser *p, TokenKind word)
     if (word == KW_DIMENSIONS)
         return array->dimension_count;
     parse_comma(p);
-    double number = trunc(parse_float(p) + SDL_EPSILON);
+    double number = trunc(parse_float(p));
     return number >= 1 && number <= array->dimension_count ? array->size[(int)number - 1] : 0;
 }
 

@@ -254,7 +254,7 @@ static Text call_vstr(Parser *p)
     Terms terms;
     parse_short(p, &terms);
     for (int i = terms.count; i < 5; i++)
-        terms.n[i] = terms.count == 1 ? terms.n[0] : 0;
+        terms.n[i] = 0;
     parse_comma(p);
     Text separator = parse_text(p);
     parse_comma(p);

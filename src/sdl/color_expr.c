@@ -93,15 +93,14 @@ static void take_rgb(Parser *p, Terms *out)
     Terms given;
     parse_full(p, &given);
     if (given.count > size)
-        parse_warn(p, WARN_VALUE, span_join(begin, p->last),
-                   "%s wants %d numbers, got %d: the rest is filter and transmit",
+        parse_warn(p, WARN_VALUE, span_join(begin, p->last), "%s wants %d numbers, got %d",
                    token_kind_text(word.kind), size, given.count);
     bool is_transmit = word.kind == KW_RGBT || word.kind == KW_SRGBT;
     for (int i = 0; i < CHANNELS; i++) {
         bool is_filled = given.count == 1 && i < size;
         out->n[i] = is_filled ? given.n[0] : i < given.count ? given.n[i] : 0;
     }
-    if (is_transmit && given.count <= size) {
+    if (is_transmit) {
         out->n[TRANSMIT] = out->n[FILTER];
         out->n[FILTER] = 0;
     }

@@ -169,7 +169,7 @@ static void advance(Parser *p)
         directive(p);
     } else if (token->kind == TOKEN_IDENTIFIER) {
         const Symbol *symbol = symbol_find(name_of(token));
-        if (symbol && symbol->target->kind == VALUE_MACRO)
+        if (symbol && symbol->target->kind == VALUE_MACRO && p->held != HOLD_ALL)
             macro_call(p, symbol->target->node);
         else
             p->is_ready = true;
@@ -230,8 +230,7 @@ void hold_restore(Parser *p, HoldState state)
 
 void release_hold(Parser *p)
 {
-    if (p->is_ready && (p->next->kind == TOKEN_HASH || p->next == frame_top(p)->end))
-        p->is_ready = false;
+    p->is_ready = false;
 }
 
 static void count_brace(Parser *p, const Token *token)

@@ -115,7 +115,7 @@ void declare_directive(Parser *p, Token word)
     if (left.array)
         array_assign(p, left.array, left.item, &value, name.span);
     else
-        value_assign(p, left.symbol->target, &value);
+        *left.symbol->target = value;
     set_deprecation(p, left.symbol, deprecation);
     take_semicolon(p, &value, &name);
 }

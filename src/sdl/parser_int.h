@@ -87,8 +87,9 @@ typedef struct Block {
     double end, step;   /* of a #for */
 } Block;
 
-/* Which directives an operator may not lie behind.  The right side of a #declare is assigned
- * before the next directive is carried out, whether its semicolon is there or not. */
+/* What an operator may not lie behind: directives that make a statement, or any directive and
+ * any macro call.  The right side of a #declare is assigned before the next one is carried out,
+ * whether its semicolon is there or not. */
 typedef enum Hold { HOLD_NONE, HOLD_STATEMENTS, HOLD_ALL } Hold;
 
 /* One argument of a macro call: a value, or the variable it stands for. */
@@ -168,7 +169,7 @@ void cursor_move(Parser *p, const Token *at);
 const Token *peek_operator(Parser *p);
 /* Set p->hold, and back. */
 void hold_set(Parser *p, Hold hold);
-/* Forget a `#` or an end that peek_operator left standing. */
+/* Forget what was left standing for a hold: it is looked at afresh. */
 void release_hold(Parser *p);
 /* Put the hold aside while something between brackets is read, and back. */
 typedef struct HoldState {
@@ -243,8 +244,6 @@ ValueKind peek_value_kind(Parser *p);
 /* Describe a value for a message: "a float", "a vector of 3", "a texture". */
 const char *value_text(const Value *value);
 void value_from_terms(Value *out, const Terms *terms);
-/* Assign a copy of `from` (arrays are copied whole). */
-void value_assign(Parser *p, Value *to, const Value *from);
 Value *array_item(Parser *p, const Array *array, const Token *name);
 bool array_item_is_set(Parser *p, const Array *array, const Token *name);
 void array_assign(Parser *p, Array *array, Value *item, const Value *from, Span span);

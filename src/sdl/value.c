@@ -28,14 +28,6 @@ void value_from_terms(Value *out, const Terms *terms)
         out->n[i] = terms->count == 5 ? (double)(float)terms->n[i] : terms->n[i];
 }
 
-void value_assign(Parser *p, Value *to, const Value *from)
-{
-    Value copy = *from;
-    if (from->kind == VALUE_ARRAY)
-        copy.node = array_copy(p, from->node);
-    *to = copy;
-}
-
 Value *parse_variable(Parser *p, Symbol **owner)
 {
     Token name = parse_next(p);
@@ -43,7 +35,7 @@ Value *parse_variable(Parser *p, Symbol **owner)
     if (owner)
         *owner = symbol;
     Value *value = symbol->target;
-    if (value->kind != VALUE_ARRAY || peek_operator(p)->kind != TOKEN_LBRACKET)
+    if (value->kind != VALUE_ARRAY || raw_peek(p)->kind != TOKEN_LBRACKET)
         return value;
     value = array_item(p, value->node, &name);
     if (value->kind == VALUE_NONE)
@@ -89,10 +81,12 @@ static void terms_from_value(Terms *out, const Value *value)
     memcpy(out->n, value->n, sizeof out->n);
 }
 
-/* The rest of a value that begins with a variable. */
+/* The rest of a value that begins with a variable.  Arrays are copied whole. */
 static void value_after(Parser *p, const Value *first, Value *out)
 {
     *out = *first;
+    if (first->kind == VALUE_ARRAY)
+        out->node = array_copy(p, first->node);
     if (!is_numbers(first))
         return;
     Terms terms;
