@@ -17,7 +17,7 @@ enum { DEGREE_MAX = 4 };
 
 typedef struct Poly {
     int degree;
-    bool is_plain; /* no error bounds wanted */
+    bool is_plain; /* no error bounds wanted: a derivative */
     double c[DEGREE_MAX + 1], e[DEGREE_MAX + 1];
 } Poly;
 
@@ -227,12 +227,50 @@ int roots_quartic(const double c[5], const double *c_error, Root out[4])
     return solve_degree(4, c, c_error, out);
 }
 
-int roots_cubic_plain(const double c[4], double out[3])
+/* Newton's method on y^3 + p y + q from a start on the convex side of the root, so that it never
+ * overshoots. */
+static double newton_depressed(double p, double q, double y)
 {
-    Poly p = {.degree = 3, .is_plain = true, .c = {c[0], c[1], c[2], c[3]}, .e = {0}};
-    Root roots[3];
-    int count = solve(&p, roots);
+    for (int i = 0; i < 60; i++) {
+        double slope = 3 * y * y + p;
+        double step = (y * (y * y + p) + q) / slope;
+        if (!isfinite(step))
+            break;
+        y -= step;
+        if (fabs(step) <= 1e-5 * fabs(y))
+            break;
+    }
+    return y;
+}
+
+/* The roots of y^3 + p y + q. */
+static int solve_depressed(double p, double q, double out[3])
+{
+    double s = p < 0 ? sqrt(p / -3) : 0, limit = 2 * s * s * s, far = copysign(1, -q);
+    if (fabs(q) < limit) { /* three, within 2 s of 0 */
+        double largest = newton_depressed(p, q, far * 2 * s);
+        double middle = newton_depressed(p, q, -q / p);
+        double other = -(largest + middle);
+        out[0] = far > 0 ? other : largest;
+        out[1] = middle;
+        out[2] = far > 0 ? largest : other;
+        return 3;
+    }
+    double start = cbrt(fabs(q));
+    if (p > 0)
+        start = num_min(start, fabs(q) / p);
+    else
+        start += 2 * s;
+    out[0] = newton_depressed(p, q, far * start);
+    return 1;
+}
+
+int roots_cubic_rough(const double c[4], double out[3])
+{
+    double a = c[2] / c[3], b = c[1] / c[3], third = a / 3;
+    double p = b - a * third, q = third * (2 * third * third - b) + c[0] / c[3];
+    int count = solve_depressed(p, q, out);
     for (int i = 0; i < count; i++)
-        out[i] = roots[i].x;
+        out[i] -= third;
     return count;
 }

@@ -19,7 +19,8 @@ int roots_quadratic(const double c[3], const double *c_error, Root out[2]);
 int roots_cubic(const double c[4], const double *c_error, Root out[3]);
 int roots_quartic(const double c[5], const double *c_error, Root out[4]);
 
-/* roots_cubic for exact coefficients, without the error bounds: faster. */
-int roots_cubic_plain(const double c[4], double out[3]);
+/* Find the real roots of a cubic fast, to about 1e-9 of the size of the largest; c[3] is not 0.
+ * A double root may be given twice, once or not at all. */
+int roots_cubic_rough(const double c[4], double out[3]);
 
 #endif

@@ -27,10 +27,16 @@ static TorusValue torus_at(const TorusLine *l, double h)
     return (TorusValue){w * w + (p.y - l->minor) * (p.y + l->minor), 2 * (w * turn + p.y * l->e.y)};
 }
 
-/* Find the root between lo and hi: Newton steps kept inside the bracket. */
-static double torus_root(const TorusLine *l, double lo, double hi, bool is_rising)
+/* Find the root between two separators, where g has the values given: first as if g were a
+ * parabola with its top at the inner one, then by Newton steps kept inside the bracket. */
+static double torus_root(const TorusLine *l, double lo, double hi, double g_lo, double g_hi)
 {
-    double x = 0.5 * (lo + hi);
+    bool is_rising = g_hi > 0;
+    double share = sqrt(is_rising ? g_lo / (g_lo - g_hi) : g_hi / (g_hi - g_lo));
+    double x = is_rising ? lo + (hi - lo) * share : hi - (hi - lo) * share;
+    double size = l->major + l->minor;
+    if (!(x > lo && x < hi))
+        x = 0.5 * (lo + hi);
     for (int i = 0; i < 120; i++) {
         TorusValue v = torus_at(l, x);
         if (v.g == 0)
@@ -39,7 +45,10 @@ static double torus_root(const TorusLine *l, double lo, double hi, bool is_risin
             hi = x;
         else
             lo = x;
-        double next = x - v.g / v.slope;
+        double step = v.g / v.slope, next = x - step;
+        /* The error after a step is about its square over the slope. */
+        if (next > lo && next < hi && 4 * step * step <= EPS_DOUBLE * size * fabs(v.slope))
+            return next;
         if (!(next > lo && next < hi) || (i & 7) == 7)
             next = 0.5 * (lo + hi);
         if (!(next > lo && next < hi) || fabs(next - x) <= EPS_DOUBLE * fabs(x))
@@ -57,7 +66,7 @@ static int separators(const TorusLine *l, double lo, double hi, double out[5])
     double flat = l->e.x * l->e.x + l->e.z * l->e.z, along = l->f.x * l->e.x + l->f.z * l->e.z;
     const double c[4] = {k * rest - 2 * ring * along, 2 * k * k + rest - 2 * ring * flat, 3 * k, 1};
     double turns[3];
-    int turn_count = roots_cubic_plain(c, turns), count = 0;
+    int turn_count = roots_cubic_rough(c, turns), count = 0;
     out[count++] = lo;
     for (int i = 0; i < turn_count; i++)
         if (turns[i] > out[count - 1] && turns[i] < hi)
@@ -70,14 +79,18 @@ static int separators(const TorusLine *l, double lo, double hi, double out[5])
 static void add_roots(const TorusLine *l, const double *at, int count, const LocalRay *ray,
                       double base, double speed, LeafHits *out)
 {
-    bool is_outside = true;
-    double size = l->major + l->minor;
+    double size = l->major + l->minor, outside = l->minor * l->minor * 0x1p-40;
+    /* Both ends are outside, whatever rounding makes of them. */
+    double last = num_max(torus_at(l, at[0]).g, outside);
     for (int i = 1; i < count; i++) {
-        bool next = i == count - 1 || torus_at(l, at[i]).g > 0;
-        if (next == is_outside || out->count == LEAF_HITS_MAX)
+        double g = torus_at(l, at[i]).g, before = last;
+        if (i == count - 1)
+            g = num_max(g, outside);
+        last = g;
+        bool next = g > 0;
+        if (next == (before > 0) || out->count == LEAF_HITS_MAX)
             continue;
-        is_outside = next;
-        double h = torus_root(l, at[i - 1], at[i], next), t = base + h / speed;
+        double h = torus_root(l, at[i - 1], at[i], before, g), t = base + h / speed;
         /* g moves by 2 r times what the point is off; twice that covers its bend. */
         double off = v3_sum_abs(local_error(ray, t)) + 2 * PLACE_EPS * size;
         double own = 4 * l->minor * (off + 4 * EPS_DOUBLE * l->minor) / fabs(torus_at(l, h).slope);

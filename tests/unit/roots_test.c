@@ -131,13 +131,33 @@ static void test_scale(void **state)
     }
 }
 
-static void test_plain(void **state)
+/* The fast cubic: good to a billionth of the largest root. */
+static void test_rough(void **state)
 {
     (void)state;
     double x[3];
-    assert_int_equal(roots_cubic_plain((double[]){-6, 11, -6, 1}, x), 3);
-    for (int i = 0; i < 3; i++)
-        assert_true(fabs(x[i] - (i + 1)) < 1e-13);
+    for (uint32_t i = 0; i < 20000; i++) {
+        Rng rng = rng_at(5, 6, i);
+        double r[3], c[5], e[5], size = ldexp(1, (int)(i % 100) - 50);
+        for (int k = 0; k < 3; k++)
+            r[k] = (2 * rng_double(&rng) - 1) * size;
+        sort(r, 3);
+        if (r[1] - r[0] < 1e-3 * size || r[2] - r[1] < 1e-3 * size)
+            continue;
+        expand(r, 3, i & 1 ? -2 : 1, c, e);
+        assert_int_equal(roots_cubic_rough(c, x), 3);
+        for (int k = 0; k < 3; k++)
+            assert_true(fabs(x[k] - r[k]) < 1e-7 * size);
+        /* One real root: (x - r)(x^2 + s^2). */
+        double s = size * rng_double(&rng);
+        const double d[4] = {-r[0] * s * s, s * s, -r[0], 1};
+        assert_int_equal(roots_cubic_rough(d, x), 1);
+        assert_true(fabs(x[0] - r[0]) < 1e-7 * size);
+    }
+    assert_int_equal(roots_cubic_rough((double[]){0, 0, 0, 1}, x), 1);
+    assert_true(x[0] == 0);
+    assert_int_equal(roots_cubic_rough((double[]){-8, 0, 0, 1}, x), 1);
+    assert_true(fabs(x[0] - 2) < 1e-9);
 }
 
 int main(void)
@@ -145,7 +165,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_known_roots), cmocka_unit_test(test_none),
         cmocka_unit_test(test_degenerate),  cmocka_unit_test(test_double),
-        cmocka_unit_test(test_scale),       cmocka_unit_test(test_plain),
+        cmocka_unit_test(test_scale),       cmocka_unit_test(test_rough),
     };
     return cmocka_run_group_tests_name("roots", tests, NULL, NULL);
 }
