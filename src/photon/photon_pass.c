@@ -1,30 +1,169 @@
-/* The photon pass.  SPDX-License-Identifier: Apache-2.0 */
+/* The photon pass: for each map the plan calls for, emission, tree and gather radius.
+ * SPDX-License-Identifier: Apache-2.0 */
 #include "photon/photon_pass.h"
 
-#include <string.h>
+#include "base/mem.h"
+#include "photon/emission_int.h"
+#include "photon/gather.h"
 
-void photon_books_done(PhotonBooks *books)
+/* Photons of an estimate when the scene does not say. */
+enum { GATHER_MAX_DEFAULT = 100 };
+
+static const FeatureId map_feature[MAP_COUNT] = {FEATURE_CAUSTIC_MAP, FEATURE_GLOBAL_MAP};
+static const StatId map_counter[MAP_COUNT] = {STAT_PHOTONS_CAUSTIC, STAT_PHOTONS_GLOBAL};
+static const char *const map_name[MAP_COUNT] = {"caustic", "global"};
+
+/* A part of the progress bar. */
+typedef struct Progress {
+    const PhotonOptions *options;
+    double begin, length;
+} Progress;
+
+static void progress_part(void *ctx, double fraction)
 {
-    memset(books, 0, sizeof *books);
+    const Progress *progress = ctx;
+    progress->options->progress(progress->options->progress_ctx,
+                                progress->begin + progress->length * fraction);
 }
 
-void photon_maps_done(PhotonMaps *maps)
+static void count_paths(const LightBooks *books, int lights, MapKind map, Stats *stats)
 {
-    memset(maps, 0, sizeof *maps);
+    for (int i = 0; i < lights; i++) {
+        stats->count[STAT_PHOTONS_EMITTED] += books[i].emitted;
+        stats->count[STAT_PHOTONS_STORED_PATHS] += books[i].stored_paths;
+        stats->count[STAT_PHOTONS_ABSORBED] += books[i].absorbed;
+        stats->count[STAT_PHOTONS_ESCAPED] += books[i].escaped;
+        stats->count[STAT_PHOTONS_CUT] += books[i].cut;
+        stats->count[map_counter[map]] += books[i].stored;
+    }
+}
+
+static Span map_span(const Tracer *tracer, MapKind map)
+{
+    return tracer_plan(tracer)->rows[map_feature[map]].why;
+}
+
+/* Send the photons of a map; *map stays NULL, with a warning, when nothing can be stored. */
+static Status emit_and_build(Emission *emission, MapKind kind, Stats *stats, PhotonMap **map)
+{
+    Diag *diag = emission->diag;
+    Span why = map_span(emission->tracer, kind);
+    if (emission->budget == 0) {
+        diag_warn(diag, WARN_RENDER, why, "no %s map: no photon of any light reaches %s",
+                  map_name[kind], kind == MAP_CAUSTIC ? "a target" : "a surface");
+        return OK;
+    }
+    PhotonList photons;
+    double started = clock_wall();
+    Status status = emission_run(emission, &photons);
+    stats->seconds[PHASE_PHOTON_EMIT] += clock_wall() - started;
+    if (status != OK)
+        return status;
+    count_paths(emission->books, tracer_scene(emission->tracer)->light_count, kind, stats);
+    if (photons.count == 0) {
+        mem_free(photons.items);
+        diag_warn(diag, WARN_RENDER, why, "no %s map: no photon was stored", map_name[kind]);
+        return OK;
+    }
+    started = clock_wall();
+    status = photon_map_new(diag, photons.items, photons.count, emission->rules.center,
+                            emission->options->threads, map);
+    stats->seconds[PHASE_PHOTON_BUILD] += clock_wall() - started;
+    return status;
+}
+
+/* Take over the books of an emission. */
+static void take_books(Emission *emission, MapKind kind, PhotonBooks *out)
+{
+    LightBooks **slot = kind == MAP_CAUSTIC ? &out->caustic : &out->global;
+    out->light_count = tracer_scene(emission->tracer)->light_count;
+    *slot = emission->books;
+    emission->books = NULL;
+}
+
+static Status make_map(const Tracer *tracer, MapKind kind, const PhotonOptions *options, Diag *diag,
+                       Stats *stats, PhotonMap **map, PhotonBooks *books)
+{
+    Emission emission;
+    double started = clock_wall();
+    Status status = emission_init(&emission, tracer, kind, options, diag);
+    stats->seconds[PHASE_PHOTON_EMIT] += clock_wall() - started;
+    if (status == OK)
+        status = emit_and_build(&emission, kind, stats, map);
+    if (status == OK)
+        take_books(&emission, kind, books);
+    emission_done(&emission, stats);
+    return status;
+}
+
+static void set_radii(const Tracer *tracer, PhotonMaps *maps)
+{
+    const PhotonSettings *settings = &tracer_scene(tracer)->settings.photons;
+    int most = settings->gather_max > 0 ? settings->gather_max : GATHER_MAX_DEFAULT;
+    if (maps->caustic)
+        maps->caustic_radius =
+            settings->radius > 0 ? settings->radius : photon_map_radius(maps->caustic, most);
+    if (maps->global)
+        maps->global_radius = photon_map_radius(maps->global, most);
 }
 
 Status photon_pass(const Tracer *tracer, const PhotonOptions *options, Diag *diag, Stats *stats,
                    PhotonMaps *out)
 {
-    (void)tracer, (void)options, (void)diag, (void)stats;
-    memset(out, 0, sizeof *out);
-    return OK;
+    const Plan *plan = tracer_plan(tracer);
+    *out = (PhotonMaps){0};
+    double sizes[MAP_COUNT] = {(double)plan->caustic_photons, (double)plan->global_photons};
+    double done = 0, total = sizes[0] + sizes[1];
+    Status status = OK;
+    for (int kind = 0; kind < MAP_COUNT && status == OK; kind++) {
+        if (!plan_has(plan, map_feature[kind]))
+            continue;
+        double length = total > 0 ? sizes[kind] / total : 1;
+        Progress progress = {options, done, length};
+        PhotonOptions part = *options;
+        part.progress = options->progress ? progress_part : NULL;
+        part.progress_ctx = &progress;
+        done += length;
+        status = make_map(tracer, (MapKind)kind, &part, diag, stats,
+                          kind == MAP_CAUSTIC ? &out->caustic : &out->global, &out->books);
+    }
+    if (status == OK)
+        set_radii(tracer, out);
+    else
+        photon_maps_done(out);
+    return status;
+}
+
+void photon_maps_done(PhotonMaps *maps)
+{
+    photon_map_free(maps->caustic);
+    photon_map_free(maps->global);
+    photon_books_done(&maps->books);
+    *maps = (PhotonMaps){0};
 }
 
 Status photon_plan_budgets(const Tracer *tracer, const PhotonOptions *options, Diag *diag,
                            PhotonBooks *out)
 {
-    (void)tracer, (void)options, (void)diag;
-    memset(out, 0, sizeof *out);
-    return OK;
+    *out = (PhotonBooks){0};
+    Status status = OK;
+    for (int kind = 0; kind < MAP_COUNT && status == OK; kind++) {
+        if (!plan_has(tracer_plan(tracer), map_feature[kind]))
+            continue;
+        Emission emission;
+        status = emission_init(&emission, tracer, (MapKind)kind, options, diag);
+        if (status == OK)
+            take_books(&emission, (MapKind)kind, out);
+        emission_done(&emission, NULL);
+    }
+    if (status != OK)
+        photon_books_done(out);
+    return status;
+}
+
+void photon_books_done(PhotonBooks *books)
+{
+    mem_free(books->caustic);
+    mem_free(books->global);
+    *books = (PhotonBooks){0};
 }

@@ -1,0 +1,58 @@
+/* Beams: the light of one source towards one target; for photon/ only.
+ * SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_PHOTON_BEAM_INT_H
+#define PMS_PHOTON_BEAM_INT_H
+
+#include "math/sample.h"
+#include "trace/trace.h"
+
+enum { CELLS_SIDE_MAX = 32 };
+
+/* Rays are drawn from the unit square: onto the cone around a ball, or the disk across it.
+ * The square is divided into cells, each with a density of its own. */
+typedef struct Beam {
+    const Light *light;
+    int light_index;
+    const Object *target; /* NULL: the whole scene */
+    V3 center;            /* of a ball around the target, scene units */
+    double radius;
+    double spacing_factor; /* the target's */
+    int side;              /* cells a side; 0: all alike */
+    double *cumulative;    /* of the weights of cells, row by row; side * side, ends with 1 */
+    double flux;           /* onto the target, summed RGB, estimated by a pilot */
+    double covered;        /* part of the square whose cells were found to matter */
+    uint64_t budget;       /* photons to send */
+} Beam;
+
+/* A ray of a beam, and how to weigh what it carries. */
+typedef struct BeamRay {
+    V3 location; /* of the light for this ray: its centre, or a place on its area */
+    Ray ray;
+    double measure; /* solid angle, or area across a parallel beam, that the square stands for
+                       at this place, times the inverse of the density */
+} BeamRay;
+
+static inline bool light_is_parallel(const Light *light)
+{
+    return light->is_parallel || light->kind == LIGHT_CYLINDER;
+}
+
+/* Make the ray at a point of the square.  `area` picks the place on an area light.
+ * Returns false where the light does not shine. */
+bool beam_ray(const Beam *beam, V2 square, V2 area, BeamRay *out);
+
+/* Return the point of the square for a uniform one, and its density. */
+V2 beam_warp(const Beam *beam, V2 uniform, double *density);
+
+/* Return whether the light can shine on the ball at all. */
+bool beam_can_shine(const Beam *beam);
+
+/* Return the flux a ray carries when it has gone `length` in all: the light it would give, had
+ * the way been straight, over the area it then covers. */
+Rgb beam_flux(const Beam *beam, const BeamRay *ray, double length);
+
+/* Set the densities of the cells from what a pilot found in each (>= 0; side * side of them).
+ * Cells count as much as the best around them, and none is left out. */
+void beam_set_cells(Beam *beam, const float *found);
+
+#endif

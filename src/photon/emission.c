@@ -1,0 +1,410 @@
+/* Aiming beams and sharing photons.
+ *
+ * Each light has a beam for each target (for the global map, one for the whole scene).  A pilot
+ * sends a few rays through every cell of a beam: cells that see the target get the photons, and
+ * the flux found is what lights and targets share the budget by, so that photons are alike in
+ * power and none is sent where it can do nothing.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "photon/emission_int.h"
+
+#include "base/mem.h"
+#include "base/work.h"
+
+enum {
+    CELL_RAYS_SIDE = 2, /* pilot rays a cell, each way */
+    CELLS_SIDE_MIN = 2,
+    PILOT_PART = 8,      /* the pilot sends at most this part of the photons, if it can */
+    PASS_PHOTON = 0x700, /* random numbers of photons, by map */
+    PASS_PILOT = 0x710
+};
+
+/* Most photons a spacing may ask for. */
+#define SPACING_PHOTONS_MAX 1e8
+
+/* In a scene with endless objects, first diffuse hits of photons for the global map further from
+ * the middle than this many radii of its bounded part are cut: an endless plane lit by a light
+ * without falloff gives off endless flux, of which less than a hundredth would come back.
+ * Parallel light is sent to a smaller part, for it has no centre its photons thin out from. */
+#define REACH_RADII 20
+#define REACH_RADII_PARALLEL 4
+
+/* --- beams ------------------------------------------------------------------------------ */
+
+static bool takes_part(const Emission *emission, int light)
+{
+    const Scene *scene = tracer_scene(emission->tracer);
+    if (emission->rules.map == MAP_CAUSTIC)
+        return tracer_plan(emission->tracer)->light_makes_caustics[light];
+    return !rgb_is_black(scene->lights[light].color) && scene->lights[light].photon_share > 0;
+}
+
+static bool add_beam(Emission *emission, size_t *capacity, const Beam *beam)
+{
+    if (!beam_can_shine(beam))
+        return true;
+    void *beams = emission->beams;
+    bool is_done =
+        mem_grow(&beams, (size_t)emission->beam_count, capacity, sizeof *emission->beams) == 0;
+    emission->beams = beams;
+    if (is_done)
+        emission->beams[emission->beam_count++] = *beam;
+    return is_done;
+}
+
+/* The spacing factor of the first target surface of an object. */
+static double spacing_factor(const Scene *scene, uint32_t object)
+{
+    for (uint32_t i = 0; i < scene->surface_count; i++) {
+        const Surface *surface = &scene->surfaces[i];
+        if (surface->object == object && surface->is_target && surface->photons.spacing_factor > 0)
+            return (double)surface->photons.spacing_factor;
+    }
+    return 1;
+}
+
+static bool add_target_beams(Emission *emission, size_t *capacity, Beam beam)
+{
+    const Scene *scene = tracer_scene(emission->tracer);
+    for (uint32_t i = 0; i < scene->object_count; i++) {
+        const Object *object = &scene->objects[i];
+        if (!object->is_target || object->no_image || !bound_is_finite(object->bound) ||
+            bound_is_empty(object->bound))
+            continue;
+        beam.target = object;
+        beam.center = bound_center(object->bound);
+        beam.radius = bound_radius(object->bound);
+        beam.spacing_factor = spacing_factor(scene, i);
+        if (!add_beam(emission, capacity, &beam))
+            return false;
+    }
+    return true;
+}
+
+static Status make_beams(Emission *emission)
+{
+    const Scene *scene = tracer_scene(emission->tracer);
+    size_t capacity = 0;
+    bool is_good = true;
+    for (int i = 0; i < scene->light_count && is_good; i++) {
+        Beam beam = {.light = &scene->lights[i], .light_index = i, .spacing_factor = 1};
+        if (!takes_part(emission, i))
+            continue;
+        if (emission->rules.map == MAP_CAUSTIC) {
+            is_good = add_target_beams(emission, &capacity, beam);
+        } else {
+            const WalkRules *rules = &emission->rules;
+            beam.center = rules->center;
+            beam.radius = rules->radius;
+            if (isfinite(rules->reach))
+                beam.radius *= light_is_parallel(beam.light) ? REACH_RADII_PARALLEL : REACH_RADII;
+            is_good = add_beam(emission, &capacity, &beam);
+        }
+    }
+    return is_good ? OK : diag_no_memory(emission->diag, "photon beams");
+}
+
+/* --- random numbers --------------------------------------------------------------------- */
+
+static uint64_t beam_number(const Emission *emission, const Beam *beam)
+{
+    return (uint64_t)(beam - emission->beams);
+}
+
+Rng emission_rng(const Emission *emission, const Beam *beam, uint64_t index)
+{
+    uint64_t item = (beam_number(emission, beam) << 40) + index;
+    return rng_at(emission->options->seed, PASS_PHOTON + (uint32_t)emission->rules.map, item);
+}
+
+bool emission_ray(const Emission *emission, const Beam *beam, uint64_t index, BeamRay *out,
+                  double *first_choice)
+{
+    Rng keys = rng_at(emission->options->seed ^ 0x5eed, (uint32_t)emission->rules.map,
+                      beam_number(emission, beam));
+    uint64_t square_key = rng_u64(&keys), area_key = rng_u64(&keys), choice_key = rng_u64(&keys);
+    uint32_t number = (uint32_t)index;
+    double density;
+    V2 square = beam_warp(beam, sample_2d(number, square_key), &density);
+    V2 area = {0.5, 0.5};
+    if (beam->light->has_area_photons)
+        area = sample_2d(number, area_key);
+    *first_choice = sample_1d(number, choice_key);
+    bool is_lit = beam_ray(beam, square, area, out);
+    out->measure /= density * (double)beam->budget;
+    return is_lit;
+}
+
+/* --- the pilot -------------------------------------------------------------------------- */
+
+/* How much a cell matters where a pilot ray found this flux: for caustics that it was found;
+ * for indirect light flux, less what is far off (its part that comes back goes as the distance
+ * squared; the best density is as the root of the product). */
+static float importance(const Emission *emission, Rgb flux, V3 at)
+{
+    if (emission->rules.map == MAP_CAUSTIC)
+        return rgb_is_black(flux) ? 0 : 1;
+    double far = v3_dist(at, emission->rules.center) / fmax(emission->rules.radius, 1e-300);
+    return rgb_sum(flux) / (float)fmax(1, far);
+}
+
+/* Send the rays of one cell; returns the flux they found, as if each stood for the square. */
+static double scout_cell(Emission *emission, TraceThread *thread, const Beam *beam, int side,
+                         int cell, float *found)
+{
+    double flux = 0;
+    for (int i = 0; i < CELL_RAYS_SIDE * CELL_RAYS_SIDE; i++) {
+        uint64_t item = (beam_number(emission, beam) << 40) + ((uint64_t)side << 24) +
+                        (uint64_t)(cell * CELL_RAYS_SIDE * CELL_RAYS_SIDE + i);
+        Rng rng = rng_at(emission->options->seed, PASS_PILOT + (uint32_t)emission->rules.map, item);
+        double u = (i % CELL_RAYS_SIDE + rng_double(&rng)) / CELL_RAYS_SIDE;
+        double v = (i / CELL_RAYS_SIDE + rng_double(&rng)) / CELL_RAYS_SIDE;
+        V2 square = {(cell % side + u) / side, (cell / side + v) / side};
+        V2 area = {rng_double(&rng), 0};
+        area.v = rng_double(&rng);
+        BeamRay ray;
+        V3 at;
+        if (!beam_ray(beam, square, area, &ray))
+            continue;
+        Rgb seen = photon_scout(thread, &emission->rules, beam, &ray, &rng, &at);
+        if (rgb_is_black(seen) || !rgb_is_finite(seen))
+            continue;
+        flux += (double)rgb_sum(seen);
+        *found = fmaxf(*found, importance(emission, seen, at));
+    }
+    return flux;
+}
+
+/* Try a beam with finer and finer cells until it is found to matter. */
+static void scout_beam(void *ctx, size_t index, int thread)
+{
+    Emission *emission = ctx;
+    Beam *beam = &emission->beams[index];
+    for (int side = beam->side; side <= CELLS_SIDE_MAX; side *= 2) {
+        float found[CELLS_SIDE_MAX * CELLS_SIDE_MAX] = {0};
+        double flux = 0;
+        for (int i = 0; i < side * side; i++)
+            flux += scout_cell(emission, &emission->threads[thread], beam, side, i, &found[i]);
+        beam->side = side;
+        beam->flux = flux / (side * side * CELL_RAYS_SIDE * CELL_RAYS_SIDE);
+        if (flux > 0) {
+            beam->cumulative = mem_array((size_t)side * (size_t)side, sizeof *beam->cumulative);
+            if (beam->cumulative)
+                beam_set_cells(beam, found);
+            return;
+        }
+    }
+    beam->flux = 0;
+}
+
+/* Cells a side for a beam's share of the pilot's rays. */
+static int pilot_side(double photons, int beams)
+{
+    double cells = photons / (PILOT_PART * CELL_RAYS_SIDE * CELL_RAYS_SIDE * (double)beams);
+    int side = CELLS_SIDE_MIN;
+    while (side < CELLS_SIDE_MAX && (double)(side * side * 4) <= cells)
+        side *= 2;
+    return side;
+}
+
+static Status run_pilot(Emission *emission, double photons)
+{
+    for (int i = 0; i < emission->beam_count; i++)
+        emission->beams[i].side = pilot_side(photons, emission->beam_count);
+    TRY(work_for(emission->thread_count, (size_t)emission->beam_count, scout_beam, emission));
+    for (int i = 0; i < emission->beam_count; i++)
+        if (emission->beams[i].flux > 0 && !emission->beams[i].cumulative)
+            return diag_no_memory(emission->diag, "photon beams");
+    return OK;
+}
+
+/* --- budgets ---------------------------------------------------------------------------- */
+
+/* Photons a beam needs for neighbours to be `spacing` apart at its target. */
+static double spaced_photons(const Beam *beam, double spacing)
+{
+    BeamRay middle;
+    if (!beam_ray(beam, (V2){0.5, 0.5}, (V2){0.5, 0.5}, &middle))
+        return 0;
+    double step = spacing * beam->spacing_factor;
+    if (!light_is_parallel(beam->light))
+        step /= fmax(v3_dist(beam->center, middle.location), 1e-300);
+    return middle.measure / (step * step);
+}
+
+static double photons_from_spacing(const Emission *emission, bool is_after_pilot)
+{
+    const Scene *scene = tracer_scene(emission->tracer);
+    double sum = 0;
+    for (int i = 0; i < emission->beam_count; i++) {
+        const Beam *beam = &emission->beams[i];
+        double photons = spaced_photons(beam, scene->settings.photons.spacing);
+        sum += is_after_pilot ? photons * (beam->flux > 0 ? beam->covered : 0) : photons;
+    }
+    return sum;
+}
+
+/* Return how many photons to send, or guess it before the pilot. */
+static double photons_wanted(const Emission *emission, bool is_after_pilot)
+{
+    const Plan *plan = tracer_plan(emission->tracer);
+    const Scene *scene = tracer_scene(emission->tracer);
+    if (emission->rules.map == MAP_GLOBAL)
+        return (double)plan->global_photons;
+    if (plan->caustic_photons > 0)
+        return (double)plan->caustic_photons;
+    double wanted = photons_from_spacing(emission, is_after_pilot);
+    if (!(wanted <= SPACING_PHOTONS_MAX)) {
+        if (is_after_pilot)
+            diag_warn(
+                emission->diag, WARN_RENDER, scene->settings.photons.span,
+                "spacing %g asks for %.3g photons: %.0f are sent; photons{count} sets another "
+                "number",
+                scene->settings.photons.spacing, wanted, SPACING_PHOTONS_MAX);
+        wanted = SPACING_PHOTONS_MAX;
+    }
+    return wanted;
+}
+
+static Status share_beams(Emission *emission, int light, uint64_t total)
+{
+    int first = 0, count = 0;
+    for (int i = emission->beam_count - 1; i >= 0; i--)
+        if (emission->beams[i].light_index == light) {
+            first = i;
+            count++;
+        }
+    double *weights = mem_array((size_t)count + 1, sizeof *weights);
+    uint64_t *shares = mem_array((size_t)count + 1, sizeof *shares);
+    if (weights && shares) {
+        for (int i = 0; i < count; i++) {
+            const Beam *beam = &emission->beams[first + i];
+            weights[i] = beam->flux / (beam->spacing_factor * beam->spacing_factor);
+        }
+        photon_budget(weights, count, total, shares);
+        for (int i = 0; i < count; i++)
+            emission->beams[first + i].budget = shares[i];
+    }
+    bool is_good = weights && shares;
+    mem_free(weights);
+    mem_free(shares);
+    return is_good ? OK : diag_no_memory(emission->diag, "photon budgets");
+}
+
+static Status share_lights(Emission *emission, uint64_t total)
+{
+    const Scene *scene = tracer_scene(emission->tracer);
+    int lights = scene->light_count;
+    double *weights = mem_array((size_t)lights + 1, sizeof *weights), sum = 0;
+    uint64_t *shares = mem_array((size_t)lights + 1, sizeof *shares);
+    Status status = weights && shares ? OK : diag_no_memory(emission->diag, "photon budgets");
+    for (int i = 0; status == OK && i < emission->beam_count; i++) {
+        const Beam *beam = &emission->beams[i];
+        double weight = beam->flux * (double)beam->light->photon_share;
+        emission->books[beam->light_index].power += beam->flux;
+        weights[beam->light_index] += weight;
+        sum += weight;
+    }
+    if (status == OK)
+        photon_budget(weights, lights, total, shares);
+    for (int i = 0; status == OK && i < lights; i++) {
+        emission->books[i].share = sum > 0 ? weights[i] / sum : 0;
+        emission->books[i].budget = shares[i];
+        emission->budget += shares[i];
+        if (shares[i] > 0)
+            status = share_beams(emission, i, shares[i]);
+    }
+    mem_free(weights);
+    mem_free(shares);
+    return status;
+}
+
+/* --- the emission ----------------------------------------------------------------------- */
+
+/* The part of the scene that indirect light is for: all of it, or what is bounded of it. */
+static Bound indirect_part(const Tracer *tracer, bool *is_endless)
+{
+    const Scene *scene = tracer_scene(tracer);
+    Bound objects = BOUND_EMPTY;
+    *is_endless = false;
+    for (uint32_t i = 0; i < scene->object_count; i++) {
+        Bound bound = scene->objects[i].bound;
+        if (bound_is_empty(bound))
+            continue;
+        if (bound_is_finite(bound))
+            objects = bound_union(objects, bound);
+        else
+            *is_endless = true;
+    }
+    if (*is_endless || bound_is_empty(objects))
+        return bound_add(tracer_bound(tracer), scene->camera.location);
+    return objects;
+}
+
+static void set_rules(Emission *emission, MapKind map)
+{
+    const Scene *scene = tracer_scene(emission->tracer);
+    const SceneSettings *settings = &scene->settings;
+    const PhotonSettings *photons = &settings->photons;
+    bool is_endless = false;
+    Bound bound = map == MAP_GLOBAL ? indirect_part(emission->tracer, &is_endless)
+                                    : tracer_bound(emission->tracer);
+    emission->rules =
+        (WalkRules){.map = map,
+                    .center = bound_center(bound),
+                    .radius = bound_radius(bound),
+                    .reach = is_endless ? REACH_RADII * bound_radius(bound) : INFINITY,
+                    .max_level = photons->max_trace_level > 0 ? photons->max_trace_level
+                                                              : settings->max_trace_level,
+                    .adc_bailout = (float)(photons->adc_bailout > 0 ? photons->adc_bailout
+                                                                    : settings->adc_bailout),
+                    .inside = emission->inside};
+}
+
+static Status make_threads(Emission *emission)
+{
+    int count = emission->options->threads;
+    emission->threads = mem_array((size_t)count, sizeof *emission->threads);
+    if (!emission->threads)
+        return diag_no_memory(emission->diag, "the photon pass");
+    for (; emission->thread_count < count; emission->thread_count++)
+        TRY(trace_thread_init(&emission->threads[emission->thread_count], emission->tracer,
+                              emission->diag));
+    return OK;
+}
+
+Status emission_init(Emission *emission, const Tracer *tracer, MapKind map,
+                     const PhotonOptions *options, Diag *diag)
+{
+    const Scene *scene = tracer_scene(tracer);
+    size_t lights = (size_t)scene->light_count;
+    *emission = (Emission){.tracer = tracer, .options = options, .diag = diag};
+    emission->books = mem_array(lights + 1, sizeof *emission->books);
+    emission->inside = mem_array(lights + 1, sizeof *emission->inside);
+    if (!emission->books || !emission->inside)
+        return diag_no_memory(diag, "the photon pass");
+    set_rules(emission, map);
+    for (size_t i = 0; i < lights; i++)
+        interiors_at(tracer, scene->lights[i].location, &emission->inside[i]);
+    TRY(make_threads(emission));
+    TRY(make_beams(emission));
+    if (emission->beam_count == 0)
+        return OK;
+    TRY(run_pilot(emission, photons_wanted(emission, false)));
+    return share_lights(emission, (uint64_t)photons_wanted(emission, true));
+}
+
+void emission_done(Emission *emission, Stats *add_to)
+{
+    for (int i = 0; i < emission->thread_count; i++) {
+        if (add_to)
+            stats_add(add_to, &emission->threads[i].stats);
+        trace_thread_done(&emission->threads[i]);
+    }
+    for (int i = 0; i < emission->beam_count; i++)
+        mem_free(emission->beams[i].cumulative);
+    mem_free(emission->threads);
+    mem_free(emission->beams);
+    mem_free(emission->inside);
+    mem_free(emission->books);
+    *emission = (Emission){0};
+}

@@ -1,0 +1,39 @@
+/* Who sends how many photons where; for photon/ only.  SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_PHOTON_EMISSION_INT_H
+#define PMS_PHOTON_EMISSION_INT_H
+
+#include "photon/photon_pass.h"
+#include "photon/walk_int.h"
+
+/* The emission for one map. */
+typedef struct Emission {
+    const Tracer *tracer;
+    const PhotonOptions *options;
+    Diag *diag;
+    WalkRules rules;
+    Interiors *inside; /* per light */
+    Beam *beams;       /* by light, then by target */
+    int beam_count;
+    TraceThread *threads;
+    int thread_count;
+    LightBooks *books; /* per light; the caller's after the pass */
+    uint64_t budget;   /* photons in all */
+} Emission;
+
+/* Aim the beams, try them with a few photons each, and share the photons out.  Free with
+ * emission_done, also after a failure. */
+Status emission_init(Emission *emission, const Tracer *tracer, MapKind map,
+                     const PhotonOptions *options, Diag *diag);
+void emission_done(Emission *emission, Stats *add_to);
+
+/* Draw ray `index` of a beam.  Returns false where the light does not shine. */
+bool emission_ray(const Emission *emission, const Beam *beam, uint64_t index, BeamRay *out,
+                  double *first_choice);
+
+/* Return the generator of a photon. */
+Rng emission_rng(const Emission *emission, const Beam *beam, uint64_t index);
+
+/* Send all photons; *out holds them in order of light, target and index. */
+Status emission_run(Emission *emission, PhotonList *out);
+
+#endif

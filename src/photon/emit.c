@@ -1,0 +1,161 @@
+/* Sending the photons, in chunks that any thread may take and that are put together in order.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "photon/emission_int.h"
+
+#include "base/mem.h"
+#include "base/work.h"
+
+#include <string.h>
+
+enum { CHUNK_PHOTONS = 1024 };
+
+/* Photons of less than this part of the mean power of their light are thinned out. */
+#define THIN_PART (1.0f / 16)
+
+/* Sums of flux, by what became of it. */
+typedef struct FluxSum {
+    double rgb[3];
+} FluxSum;
+
+typedef struct Chunk {
+    Beam *beam;
+    uint64_t first; /* photon of the beam */
+    uint32_t count;
+    PhotonList photons;
+    uint64_t ends[PATH_END_COUNT];
+    FluxSum emitted, left[PATH_END_COUNT];
+} Chunk;
+
+typedef struct EmitWork {
+    Emission *emission;
+    Chunk *chunks;
+    size_t count;
+} EmitWork;
+
+static void flux_add(FluxSum *sum, Rgb flux)
+{
+    sum->rgb[0] += (double)flux.r;
+    sum->rgb[1] += (double)flux.g;
+    sum->rgb[2] += (double)flux.b;
+}
+
+static Rgb flux_rgb(const FluxSum *sum)
+{
+    return rgb((float)sum->rgb[0], (float)sum->rgb[1], (float)sum->rgb[2]);
+}
+
+static void emit_photon(Emission *emission, TraceThread *thread, Chunk *chunk, uint64_t index,
+                        float least)
+{
+    const Beam *beam = chunk->beam;
+    BeamRay ray;
+    double first_choice;
+    WalkResult result = {.end = PATH_CUT};
+    if (emission_ray(emission, beam, index, &ray, &first_choice)) {
+        Rng rng = emission_rng(emission, beam, index);
+        photon_walk(thread, &emission->rules, beam, &ray, first_choice, least, &rng,
+                    &chunk->photons, &result);
+    }
+    chunk->ends[result.end]++;
+    if (!rgb_is_finite(result.emitted) || !rgb_is_finite(result.left))
+        return;
+    flux_add(&chunk->emitted, result.emitted);
+    flux_add(&chunk->left[result.end], result.left);
+}
+
+static void emit_chunk(void *ctx, size_t index, int thread)
+{
+    EmitWork *work = ctx;
+    Emission *emission = work->emission;
+    const PhotonOptions *options = emission->options;
+    Chunk *chunk = &work->chunks[index];
+    const LightBooks *books = &emission->books[chunk->beam->light_index];
+    float mean = (float)(books->power / (3 * (double)books->budget));
+    for (uint32_t i = 0; i < chunk->count; i++)
+        emit_photon(emission, &emission->threads[thread], chunk, chunk->first + i,
+                    mean * THIN_PART);
+    if (thread == 0 && options->progress)
+        options->progress(options->progress_ctx, (double)index / (double)work->count);
+}
+
+static Status make_chunks(Emission *emission, EmitWork *work)
+{
+    size_t count = 0;
+    for (int i = 0; i < emission->beam_count; i++)
+        count += (size_t)((emission->beams[i].budget + CHUNK_PHOTONS - 1) / CHUNK_PHOTONS);
+    *work = (EmitWork){emission, mem_array(count + 1, sizeof *work->chunks), 0};
+    if (!work->chunks)
+        return diag_no_memory(emission->diag, "photons");
+    for (int i = 0; i < emission->beam_count; i++) {
+        Beam *beam = &emission->beams[i];
+        for (uint64_t first = 0; first < beam->budget; first += CHUNK_PHOTONS) {
+            uint64_t rest = beam->budget - first;
+            uint32_t size = rest < CHUNK_PHOTONS ? (uint32_t)rest : CHUNK_PHOTONS;
+            work->chunks[work->count++] = (Chunk){.beam = beam, .first = first, .count = size};
+        }
+    }
+    return OK;
+}
+
+static void add_rgb(Rgb *sum, const FluxSum *flux)
+{
+    *sum = rgb_add(*sum, flux_rgb(flux));
+}
+
+/* What a path had less than it started with was absorbed on the way. */
+static void keep_books(LightBooks *books, const Chunk *chunk)
+{
+    FluxSum absorbed = chunk->emitted;
+    for (int end = 0; end < PATH_END_COUNT; end++)
+        for (int c = 0; c < 3; c++)
+            if (end != PATH_ABSORBED)
+                absorbed.rgb[c] -= chunk->left[end].rgb[c];
+    books->emitted += chunk->count;
+    books->stored_paths += chunk->ends[PATH_STORED];
+    books->absorbed += chunk->ends[PATH_ABSORBED];
+    books->escaped += chunk->ends[PATH_ESCAPED];
+    books->cut += chunk->ends[PATH_CUT];
+    books->stored += chunk->photons.count;
+    add_rgb(&books->flux_emitted, &chunk->emitted);
+    add_rgb(&books->flux_stored, &chunk->left[PATH_STORED]);
+    add_rgb(&books->flux_absorbed, &absorbed);
+    add_rgb(&books->flux_escaped, &chunk->left[PATH_ESCAPED]);
+    add_rgb(&books->flux_cut, &chunk->left[PATH_CUT]);
+}
+
+static Status merge_chunks(const EmitWork *work, PhotonList *out)
+{
+    size_t total = 0;
+    bool is_short = false;
+    for (size_t i = 0; i < work->count; i++) {
+        total += work->chunks[i].photons.count;
+        is_short |= work->chunks[i].photons.is_short;
+    }
+    *out = (PhotonList){.items = is_short ? NULL : mem_array(total, sizeof *out->items)};
+    if (!out->items)
+        return diag_no_memory(work->emission->diag, "photons");
+    for (size_t i = 0; i < work->count; i++) {
+        Chunk *chunk = &work->chunks[i];
+        if (chunk->photons.count)
+            memcpy(out->items + out->count, chunk->photons.items,
+                   chunk->photons.count * sizeof *out->items);
+        out->count += chunk->photons.count;
+        keep_books(&work->emission->books[chunk->beam->light_index], chunk);
+    }
+    out->capacity = total;
+    return OK;
+}
+
+Status emission_run(Emission *emission, PhotonList *out)
+{
+    EmitWork work;
+    *out = (PhotonList){0};
+    TRY(make_chunks(emission, &work));
+    Status status = work_for(emission->thread_count, work.count, emit_chunk, &work);
+    if (status == OK)
+        status = merge_chunks(&work, out);
+    for (size_t i = 0; i < work.count; i++)
+        mem_free(work.chunks[i].photons.items);
+    mem_free(work.chunks);
+    return status;
+}

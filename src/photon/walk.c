@@ -1,0 +1,363 @@
+/* The way of one photon: from the light over reflections and refractions to where it is stored,
+ * with one throw of the dice a surface.  SPDX-License-Identifier: Apache-2.0 */
+#include "photon/walk_int.h"
+
+#include "base/mem.h"
+
+/* Surfaces one path may pass: straight ones do not count as levels. */
+enum { PATH_SURFACES_MAX = 10000 };
+
+/* A path on its way. */
+typedef struct Walk {
+    TraceThread *thread;
+    const WalkRules *rules;
+    const Beam *beam;
+    const BeamRay *start;
+    Ray ray;
+    Interiors inside;
+    double length; /* gone in all up to the last surface */
+    Rgb weight;    /* share of the light that is left */
+    Rgb flux;      /* of a weight of 1; fixed at the first diffuse surface */
+    int level;
+    bool is_aimed;    /* has met its target, or needs none */
+    bool is_specular; /* was reflected or refracted */
+    bool is_diffuse;  /* was reflected diffusely */
+    bool is_straight; /* the last surface did not bend it */
+    double choice;    /* of the first roulette; negative: used up */
+    Rng *rng;
+} Walk;
+
+typedef enum Branch { BRANCH_ABSORB, BRANCH_DIFFUSE, BRANCH_REFLECT, BRANCH_TRANSMIT } Branch;
+
+/* What a surface does with light, each channel, and how likely each branch is. */
+typedef struct Roulette {
+    Rgb diffuse, reflect, transmit;
+    double p_diffuse, p_reflect, p_transmit;
+    V3 reflect_dir;
+} Roulette;
+
+static Rgb not_negative(Rgb c)
+{
+    return rgb(fmaxf(c.r, 0), fmaxf(c.g, 0), fmaxf(c.b, 0));
+}
+
+/* Light of an interior's absorption on the way to the surface. */
+static void absorb_segment(Walk *walk, double t)
+{
+    if (walk->inside.count == 0)
+        return;
+    const Interior *interior = walk->inside.in[walk->inside.count - 1];
+    if (interior->fade_distance > 0)
+        walk->weight = rgb_mul(walk->weight, interior_fade(interior, t, false));
+}
+
+static Rgb flux_here(const Walk *walk)
+{
+    return walk->is_diffuse ? walk->flux : beam_flux(walk->beam, walk->start, walk->length);
+}
+
+/* --- the roulette ----------------------------------------------------------------------- */
+
+/* May photons of this light be reflected (refracted) here?  Caustics need leave, indirect light
+ * only must not be forbidden. */
+static bool may_reflect(const Walk *walk, const Surface *surface)
+{
+    if (walk->rules->map == MAP_CAUSTIC)
+        return plan_photons_reflect(walk->beam->light, surface);
+    return surface->photons.reflection != TRI_OFF &&
+           walk->beam->light->photon_reflection != TRI_OFF;
+}
+
+static bool may_refract(const Walk *walk, const Surface *surface)
+{
+    if (walk->rules->map == MAP_CAUSTIC)
+        return plan_photons_refract(walk->beam->light, surface);
+    return surface->photons.refraction != TRI_OFF &&
+           walk->beam->light->photon_refraction != TRI_OFF;
+}
+
+/* The probabilities of the three branches: that of going on at all is the largest channel of
+ * all that is sent on, and it is shared in proportion to what each branch sends. */
+static void set_odds(Roulette *r)
+{
+    Rgb all = rgb_add(r->diffuse, rgb_add(r->reflect, r->transmit));
+    double sum = (double)rgb_sum(all), most = fmin(1, (double)rgb_max(all));
+    double scale = sum > 0 ? most / sum : 0;
+    r->p_diffuse = scale * (double)rgb_sum(r->diffuse);
+    r->p_reflect = scale * (double)rgb_sum(r->reflect);
+    r->p_transmit = scale * (double)rgb_sum(r->transmit);
+}
+
+static void set_roulette(const Walk *walk, const SurfaceSample *s, Rgb diffuse, Roulette *out)
+{
+    *out = (Roulette){.diffuse = diffuse};
+    if (s->has_transmission && may_refract(walk, s->surface))
+        out->transmit = s->is_total_reflection ? RGB_WHITE : not_negative(s->filter);
+    if (may_reflect(walk, s->surface))
+        for (int i = 0; i < s->layer_count; i++) {
+            Rgb reflect = not_negative(s->layers[i].reflect);
+            if (rgb_is_black(reflect))
+                continue;
+            if (rgb_is_black(out->reflect))
+                out->reflect_dir = s->layers[i].reflect_dir;
+            out->reflect = rgb_add(out->reflect, reflect);
+        }
+    set_odds(out);
+}
+
+static double next_choice(Walk *walk)
+{
+    double choice = walk->choice;
+    walk->choice = -1;
+    return choice >= 0 ? choice : rng_double(walk->rng);
+}
+
+static Branch spin(Walk *walk, const Roulette *r)
+{
+    double x = next_choice(walk);
+    if (x < r->p_transmit)
+        return BRANCH_TRANSMIT;
+    x -= r->p_transmit;
+    if (x < r->p_reflect)
+        return BRANCH_REFLECT;
+    x -= r->p_reflect;
+    return x < r->p_diffuse ? BRANCH_DIFFUSE : BRANCH_ABSORB;
+}
+
+/* --- storing ---------------------------------------------------------------------------- */
+
+static bool make_room(PhotonList *list)
+{
+    void *items = list->items;
+    if (mem_grow(&items, list->count, &list->capacity, sizeof *list->items) != 0)
+        list->is_short = true;
+    list->items = items;
+    return list->count < list->capacity;
+}
+
+/* Keep a photon; one of little power with the chance that makes up for more. */
+static bool store(Walk *walk, const SurfaceSample *s, Rgb power, float least, PhotonList *out)
+{
+    float most = rgb_max(power);
+    if (!(most > 0) || !rgb_is_finite(power))
+        return false;
+    if (most < least) {
+        if (rng_float(walk->rng) * least >= most)
+            return false;
+        power = rgb_scale(power, least / most);
+    }
+    if (!make_room(out))
+        return false;
+    V3 at = v3_sub(s->at.p, walk->rules->center);
+    Photon *photon = &out->items[out->count++];
+    *photon = (Photon){.pos = {(float)at.x, (float)at.y, (float)at.z},
+                       .flags = (uint16_t)(normal14_encode(s->ng) << 2)};
+    rgbe_encode(power, walk->rng, photon->rgbe);
+    direction_encode(s->wo, &photon->phi, &photon->theta);
+    return true;
+}
+
+static bool is_kept(const Walk *walk, const SurfaceSample *s, Rgb diffuse)
+{
+    if (rgb_is_black(diffuse))
+        return false;
+    if (walk->rules->map == MAP_GLOBAL)
+        return walk->is_diffuse;
+    return walk->is_specular && s->surface->photons.is_collecting;
+}
+
+/* --- the way ---------------------------------------------------------------------------- */
+
+static void begin(Walk *walk)
+{
+    walk->ray = walk->start->ray;
+    walk->inside = walk->rules->inside[walk->beam->light_index];
+    walk->weight = RGB_WHITE;
+    walk->is_aimed = walk->beam->target == NULL;
+}
+
+/* Go on in direction d from a surface. */
+static void leave(Walk *walk, const SurfaceSample *s, V3 d, bool is_straight)
+{
+    walk->ray = trace_ray_from(&s->at, d);
+    walk->is_straight = is_straight;
+}
+
+/* Pass an object that photons do not see, straight on. */
+static void pass_through(Walk *walk, const SurfaceSample *s)
+{
+    walk->weight = rgb_mul(walk->weight, s->has_transmission ? not_negative(s->filter) : RGB_BLACK);
+    if (s->has_transmission && !s->is_total_reflection)
+        walk->inside = s->inside_after;
+    leave(walk, s, walk->ray.d, true);
+}
+
+static void bounce_diffusely(Walk *walk, const SurfaceSample *s)
+{
+    V2 u = {rng_double(walk->rng), 0};
+    u.v = rng_double(walk->rng);
+    if (!walk->is_diffuse)
+        walk->flux = flux_here(walk);
+    walk->is_diffuse = true;
+    leave(walk, s, v3_unit(warp_to_frame(warp_cosine(u), s->ng)), false);
+}
+
+/* Follow the branch the dice chose; returns false when the path ends here. */
+static bool follow(Walk *walk, const SurfaceSample *s, const Roulette *r, Branch branch)
+{
+    switch (branch) {
+    case BRANCH_TRANSMIT:
+        walk->weight = rgb_mul(walk->weight, rgb_scale(r->transmit, (float)(1 / r->p_transmit)));
+        if (!s->is_total_reflection)
+            walk->inside = s->inside_after;
+        leave(walk, s, s->transmit_dir, s->is_straight && !s->is_total_reflection);
+        walk->is_specular = true;
+        return true;
+    case BRANCH_REFLECT:
+        walk->weight = rgb_mul(walk->weight, rgb_scale(r->reflect, (float)(1 / r->p_reflect)));
+        leave(walk, s, r->reflect_dir, false);
+        walk->is_specular = true;
+        return true;
+    case BRANCH_DIFFUSE:
+        if (walk->rules->map == MAP_CAUSTIC)
+            return false;
+        walk->weight = rgb_mul(walk->weight, rgb_scale(r->diffuse, (float)(1 / r->p_diffuse)));
+        bounce_diffusely(walk, s);
+        return true;
+    case BRANCH_ABSORB:
+        break;
+    }
+    return false;
+}
+
+/* Go to the next surface.  Returns false, with the end of the path, when there is none to go on
+ * from. */
+static bool advance(Walk *walk, Hit *hit, SurfaceSample *s, PathEnd *end)
+{
+    if (!trace_closest(walk->thread, &walk->ray, RAY_PHOTON, hit)) {
+        *end = PATH_ESCAPED;
+        return false;
+    }
+    walk->length += hit->t;
+    const PhotonFlags *flags = &hit->surface->photons;
+    if (!walk->is_aimed && !flags->is_pass_through) {
+        walk->is_aimed = hit->object == walk->beam->target;
+        if (!walk->is_aimed) { /* something is in the way; if a target, it has its own beam */
+            *end = PATH_CUT;
+            return false;
+        }
+    }
+    if (!walk->is_straight)
+        walk->level++;
+    surface_sample(walk->thread, &walk->ray, hit, &walk->inside, s);
+    absorb_segment(walk, hit->t);
+    return true;
+}
+
+/* The limits of the language. */
+static bool is_over_limit(const Walk *walk)
+{
+    return walk->level >= walk->rules->max_level ||
+           !(rgb_max(walk->weight) >= walk->rules->adc_bailout);
+}
+
+static bool is_beyond_reach(const Walk *walk, const SurfaceSample *s)
+{
+    return walk->rules->map == MAP_GLOBAL && !walk->is_diffuse &&
+           v3_dist(s->at.p, walk->rules->center) > walk->rules->reach;
+}
+
+/* Store what is to be stored and throw the dice; returns false when the path ends here. */
+static bool meet_surface(Walk *walk, const SurfaceSample *s, float least, PhotonList *out,
+                         WalkResult *result)
+{
+    Rgb diffuse = not_negative(surface_diffuse(s));
+    if (!rgb_is_black(diffuse) && is_beyond_reach(walk, s)) {
+        result->end = PATH_CUT;
+        return false;
+    }
+    if (is_kept(walk, s, diffuse)) {
+        Rgb power = rgb_mul(flux_here(walk), walk->weight);
+        if (store(walk, s, power, least, out) && result->stored++ == 0)
+            result->left = power;
+    }
+    Roulette roulette;
+    set_roulette(walk, s, diffuse, &roulette);
+    if (!follow(walk, s, &roulette, spin(walk, &roulette))) {
+        result->end = PATH_ABSORBED;
+        walk->weight = RGB_BLACK;
+        return false;
+    }
+    result->end = PATH_CUT;
+    return !is_over_limit(walk);
+}
+
+void photon_walk(TraceThread *thread, const WalkRules *rules, const Beam *beam,
+                 const BeamRay *start, double first_choice, float least, Rng *rng, PhotonList *out,
+                 WalkResult *result)
+{
+    Walk walk = {.thread = thread,
+                 .rules = rules,
+                 .beam = beam,
+                 .start = start,
+                 .choice = first_choice,
+                 .rng = rng};
+    *result = (WalkResult){.end = PATH_CUT};
+    begin(&walk);
+    for (int surfaces = 0; surfaces < PATH_SURFACES_MAX; surfaces++) {
+        Hit hit;
+        SurfaceSample s;
+        if (!advance(&walk, &hit, &s, &result->end))
+            break;
+        if (s.surface->photons.is_pass_through && rules->map == MAP_CAUSTIC) {
+            pass_through(&walk, &s);
+            if (is_over_limit(&walk))
+                break;
+        } else if (!meet_surface(&walk, &s, least, out, result)) {
+            break;
+        }
+    }
+    arena_reset(thread->scratch);
+    result->emitted = flux_here(&walk);
+    if (result->stored > 0)
+        result->end = PATH_STORED;
+    else
+        result->left = rgb_mul(result->emitted, walk.weight);
+}
+
+Rgb photon_scout(TraceThread *thread, const WalkRules *rules, const Beam *beam,
+                 const BeamRay *start, Rng *rng, V3 *at)
+{
+    Walk walk = {
+        .thread = thread, .rules = rules, .beam = beam, .start = start, .choice = -1, .rng = rng};
+    begin(&walk);
+    Rgb found = RGB_BLACK;
+    for (int surfaces = 0; surfaces < PATH_SURFACES_MAX; surfaces++) {
+        Hit hit;
+        SurfaceSample s;
+        PathEnd end;
+        if (!advance(&walk, &hit, &s, &end))
+            break;
+        Rgb diffuse = not_negative(surface_diffuse(&s));
+        Roulette roulette;
+        if (rules->map == MAP_CAUSTIC && s.surface->photons.is_pass_through) {
+            pass_through(&walk, &s);
+            if (is_over_limit(&walk))
+                break;
+            continue;
+        }
+        set_roulette(&walk, &s, diffuse, &roulette);
+        bool is_there = rules->map == MAP_CAUSTIC
+                            ? roulette.p_reflect + roulette.p_transmit > 0
+                            : !rgb_is_black(diffuse) && !is_beyond_reach(&walk, &s);
+        if (is_there) {
+            found = rgb_mul(flux_here(&walk), walk.weight);
+            *at = s.at.p;
+        }
+        if (is_there || rules->map == MAP_CAUSTIC || !rgb_is_black(diffuse) ||
+            !follow(&walk, &s, &roulette, spin(&walk, &roulette)) || is_over_limit(&walk))
+            break;
+    }
+    arena_reset(thread->scratch);
+    return found;
+}
