@@ -156,15 +156,11 @@ static Status check_channels(const ExrReader *r)
 /* Refuse sizes that the file is too short to hold, before memory is asked for. */
 static Status check_size(const ExrReader *r, int width, int height)
 {
-    exr_compression_t compression = EXR_COMPRESSION_NONE;
     int32_t chunks = 0;
-    exr_get_compression(r->context, 0, &compression);
     exr_get_chunk_count(r->context, 0, &chunks);
-    bool is_dwa = compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB;
-    double ratio = is_dwa ? DWA_RATIO_MAX : DEFLATE_RATIO_MAX;
     double bytes = 2.0 * width * height * r->list->num_channels;
     if (chunks < 1 || (double)chunks * 16 > (double)r->file_bytes ||
-        bytes > ratio * (double)r->file_bytes)
+        bytes > PACK_RATIO_MAX * (double)r->file_bytes)
         return refuse(r, "the file ends too early");
     return OK;
 }
