@@ -15,8 +15,7 @@
 
 enum {
     READ_CHANNELS_MAX = 1024,
-    DEFLATE_RATIO_MAX = 1100,              /* deflate packs 1032 to 1 at best */
-    DWA_RATIO_MAX = 64 * DEFLATE_RATIO_MAX /* ... of the first of 64 coefficients */
+    PACK_RATIO_MAX = 1100 /* deflate packs 1032 to 1 at best, the other methods less */
 };
 
 /* Where a channel of the file goes. */

@@ -20,9 +20,10 @@
 
 enum {
     PNG_LEVEL = 6,
-    PNG_CHUNK_BYTES_MAX = 8 << 20, /* of a text or profile chunk that is read */
-    PNG_CHUNKS_MAX = 1000,         /* kept chunks; a file with more is refused */
-    PNG_RATIO_MAX = 1100           /* deflate packs 1032 to 1 at best */
+    PNG_CHUNK_BYTES_MAX = 8 << 20,  /* of a text or profile chunk that is read */
+    PNG_BLOCK_BYTES_MAX = 32 << 20, /* libpng asks for at a time; pixels are not among it */
+    PNG_CHUNKS_MAX = 1000,          /* kept chunks; a file with more is refused */
+    PNG_RATIO_MAX = 1100            /* deflate packs 1032 to 1 at best */
 };
 
 typedef struct PngJob {
@@ -53,8 +54,11 @@ static void ignore_warning(png_structp png, png_const_charp message)
     (void)message;
 }
 
+/* A broken file may ask libpng for gigabytes with one chunk's length. */
 static png_voidp job_alloc(png_structp png, png_alloc_size_t size)
 {
+    if (size > PNG_BLOCK_BYTES_MAX)
+        return NULL;
     void *block = mem_alloc(size);
     PngJob *job = png_get_mem_ptr(png);
     job->is_memory |= !block;

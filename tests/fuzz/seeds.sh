@@ -1,0 +1,21 @@
+#!/bin/sh
+# Put the files a fuzzer starts from into a folder: tests/fuzz/seeds.sh TARGET FOLDER.
+target=$1 folder=$2
+case $target in
+scene)
+    for file in tests/lang/*/*.pms tests/lang/*/*.inc; do
+        cp "$file" "$folder/$(echo "$file" | tr / _)"
+    done
+    ;;
+exr | png)
+    pms=build/release/pms
+    [ -x $pms ] || exit 0
+    echo 'sphere { 0, 1 pigment { rgb 1 } } light_source { <5, 5, -5>, 1 }' >"$folder/seed.pms"
+    for size in 1 17; do
+        $pms "$folder/seed.pms" -w $size --height $size -o "$folder/$size.$target" || exit 1
+        $pms "$folder/seed.pms" -w $size --height $size --bits 16 --half --alpha --layers N,Z \
+            -o "$folder/more_$size.$target" || exit 1
+    done
+    rm "$folder/seed.pms"
+    ;;
+esac
