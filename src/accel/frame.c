@@ -52,11 +52,15 @@ static bool narrow(double o, double d, double lo, double hi, double *near, doubl
 
 bool frame_enter(const IndexFrame *frame, const Ray *ray, FrameRay *out)
 {
-    double near = ray->tmin, far = ray->tmax;
+    double near = -INFINITY, far = INFINITY;
     const Bound *b = &frame->bound;
     if (!narrow(ray->o.x, ray->d.x, b->lo.x, b->hi.x, &near, &far) ||
         !narrow(ray->o.y, ray->d.y, b->lo.y, b->hi.y, &near, &far) ||
         !narrow(ray->o.z, ray->d.z, b->lo.z, b->hi.z, &near, &far))
+        return false;
+    out->line_start = near > 0 ? near : 0;
+    near = num_max(near, ray->tmin);
+    if (!(near <= num_min(far, ray->tmax)))
         return false;
     double length = v3_len(ray->d);
     out->per_t = length * frame->scale;

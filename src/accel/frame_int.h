@@ -33,6 +33,8 @@ void frame_box(const IndexFrame *frame, Bound box, struct RTCBounds *out);
 typedef struct FrameRay {
     struct RTCRayHit hit; /* for Embree */
     double start;         /* where the frame ray starts, in t of the ray */
+    double line_start;    /* where the line enters the box ahead of the ray's origin, in t; 0: the
+                             origin is inside.  The same for all rays of one line. */
     double per_t;         /* frame units per unit of t */
 } FrameRay;
 

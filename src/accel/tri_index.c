@@ -226,9 +226,9 @@ static void run(const TriIndex *index, const Ray *ray, TriQuery *q)
     q->index = index;
     q->tmin = ray->tmin;
     q->tmax = ray->tmax;
-    /* A ray that starts inside the index is not moved: nothing is rounded then. */
-    double entry = q->at.start + FRAME_PAD / q->at.per_t;
-    shear_init(&q->shear, ray, entry > ray->tmin || ray->tmin != 0 ? entry : 0);
+    /* The arithmetic depends on the line alone, not on the part asked for: who walks along a
+     * line from hit to hit gets the same t for a triangle every time, and never meets it twice. */
+    shear_init(&q->shear, ray, q->at.line_start);
     rtcInitIntersectContext(&q->context);
     rtcIntersect1(index->scene.scene, &q->context, &q->at.hit);
 }
