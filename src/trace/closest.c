@@ -116,6 +116,37 @@ static void fill_hit(const ClosestQuery *query, const Ray *ray, Hit *out)
     fill_ties(query, out);
 }
 
+/* The view of the ray's origin, if there is one. */
+static const ViewIndex *view_of(const Tracer *tracer, const Ray *ray, RayKind kind)
+{
+    if (kind == RAY_CAMERA)
+        return tracer->camera_view && view_is_from(tracer->camera_view, ray->o)
+                   ? tracer->camera_view
+                   : NULL;
+    if (kind != RAY_PHOTON)
+        return NULL;
+    for (int i = 0; i < tracer->scene->light_count; i++)
+        if (tracer->light_views[i] && view_is_from(tracer->light_views[i], ray->o))
+            return tracer->light_views[i];
+    return NULL;
+}
+
+/* Test the objects of a cell, nearest first; returns false if it does not know them all. */
+static bool test_view(ClosestQuery *query, const ViewIndex *view, Ray *ray)
+{
+    const ViewCell *cell = view_cell(view, ray->d);
+    if (cell->count == VIEW_CELL_FULL)
+        return false;
+    for (uint32_t i = 0; i < cell->count; i++) {
+        uint32_t object = cell->object[i];
+        if ((double)view->near[object] > ray->tmax)
+            break;
+        if (!object_is_missed(&query->objects[object], ray))
+            test_object(query, object, ray);
+    }
+    return true;
+}
+
 bool trace_closest(TraceThread *thread, const Ray *ray, RayKind kind, Hit *out)
 {
     static const StatId counters[RAY_KIND_COUNT] = {STAT_CAMERA_RAYS, STAT_REFLECTED_RAYS,
@@ -131,7 +162,8 @@ bool trace_closest(TraceThread *thread, const Ray *ray, RayKind kind, Hit *out)
     Ray rest = *ray;
     for (uint32_t i = 0; i < tracer->unbounded_count; i++)
         test_object(&query, tracer->unbounded[i], &rest);
-    if (tracer->index)
+    const ViewIndex *view = view_of(tracer, ray, kind);
+    if (tracer->index && !(view && test_view(&query, view, &rest)))
         box_index_closest(tracer->index, &rest, test_item, &query);
     if (query.count == 0)
         return false;

@@ -74,17 +74,60 @@ static bool test_item(void *ctx, uint32_t item, Ray *ray)
     return test_object(query, query->tracer->index_objects[item], ray);
 }
 
-static bool find_blocker(ShadowQuery *query, const Ray *ray, int light)
+/* Return true if both ends of the ray are on one side of a plane. */
+static bool plane_is_missed(const Shape *plane, const Ray *ray)
+{
+    V3 n = plane->u.plane.normal;
+    double start = v3_dot(n, ray->o) - plane->u.plane.distance;
+    double end = start + ray->tmax * v3_dot(n, ray->d);
+    return (start > 0 && end > 0) || (start < 0 && end < 0);
+}
+
+/* Test the objects the light sees in this direction; returns false if the cell does not know
+ * them all. */
+static bool test_view(ShadowQuery *query, const ViewIndex *view, const Ray *ray, bool *is_blocked)
+{
+    const ViewCell *cell = view_cell(view, v3_neg(ray->d));
+    if (cell->count == VIEW_CELL_FULL)
+        return false;
+    *is_blocked = false;
+    for (uint32_t i = 0; i < cell->count && !*is_blocked; i++) {
+        uint32_t object = cell->object[i];
+        /* The ray ends at the light, give or take its slack. */
+        if ((double)view->near[object] > ray->tmax * (1 + 1e-6))
+            break;
+        if (!object_is_missed(&query->tracer->objects[object], ray))
+            *is_blocked = test_object(query, object, ray);
+    }
+    return true;
+}
+
+/* The view of a light holds for rays that aim at it to within its margin. */
+#define VIEW_NEAREST 1e10
+
+static bool find_blocker(ShadowQuery *query, const Ray *ray, int light, double error)
 {
     const Tracer *tracer = query->tracer;
     uint32_t last = light >= 0 ? query->thread->blockers[light] : NO_OBJECT;
-    if (last != NO_OBJECT && may_block(query, last) && test_object(query, last, ray))
+    if (last != NO_OBJECT && may_block(query, last) &&
+        !object_is_missed(&tracer->objects[last], ray) && test_object(query, last, ray))
         return true;
-    for (uint32_t i = 0; i < tracer->unbounded_count; i++)
-        if (test_object(query, tracer->unbounded[i], ray))
+    for (uint32_t i = 0; i < tracer->unbounded_count; i++) {
+        uint32_t object = tracer->unbounded[i];
+        const Shape *shape = tracer->objects[object].shape;
+        if (shape->kind == SHAPE_PLANE && plane_is_missed(shape, ray))
+            continue;
+        if (test_object(query, object, ray))
             return true;
+    }
+    if (!tracer->index)
+        return false;
+    bool is_blocked;
+    const ViewIndex *view = light >= 0 ? tracer->light_views[light] : NULL;
+    if (view && ray->tmax > VIEW_NEAREST * error && test_view(query, view, ray, &is_blocked))
+        return is_blocked;
     Ray rest = *ray;
-    return tracer->index && box_index_any(tracer->index, &rest, test_item, query);
+    return box_index_any(tracer->index, &rest, test_item, query);
 }
 
 static bool is_solid_texture(const Texture *texture)
@@ -205,7 +248,7 @@ Rgb trace_shadow(TraceThread *thread, const ShapePoint *from, V3 to, double dist
     query.count = 0;
     query.capacity = FILTERS_FEW;
     query.filters = query.few;
-    if (find_blocker(&query, &ray, light)) {
+    if (find_blocker(&query, &ray, light, from->p_error)) {
         if (light >= 0)
             thread->blockers[light] = query.blocker;
         return RGB_BLACK;

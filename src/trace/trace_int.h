@@ -4,6 +4,7 @@
 
 #include "accel/accel.h"
 #include "trace/trace.h"
+#include "trace/view_index.h"
 
 /* What an object does to a shadow ray. */
 typedef enum ShadowKind {
@@ -16,6 +17,9 @@ typedef enum ShadowKind {
 /* Per object, what queries ask for again and again. */
 typedef struct TracedObject {
     const Shape *shape;
+    V3 center; /* of a ball around it */
+    double radius2;
+    bool has_ball;  /* and the ball is worth a test */
     uint8_t shadow; /* ShadowKind */
     bool is_hidden[RAY_KIND_COUNT];
     bool is_closed; /* made of closed solids: normals tell entering from leaving */
@@ -31,10 +35,24 @@ struct Tracer {
     uint32_t unbounded_count;
     uint32_t *clear; /* solids that may let light through, ascending */
     uint32_t clear_count;
+    ViewIndex *camera_view;  /* NULL: none */
+    ViewIndex **light_views; /* per light; NULL: none */
     Bound bound;
 };
 
 enum { NO_OBJECT = UINT32_MAX };
+
+/* Return true if the ray passes an object by; false proves nothing.  The slack is above the
+ * rounding of the sums. */
+static inline bool object_is_missed(const TracedObject *object, const Ray *ray)
+{
+    if (!object->has_ball)
+        return false;
+    V3 to = v3_sub(object->center, ray->o);
+    double along = v3_dot(to, ray->d), far2 = v3_len2(to);
+    double limit = object->radius2 + far2 * 1e-12;
+    return far2 - along * along > limit || (along < 0 && far2 > limit);
+}
 
 /* Which texture a surface shows at a point; up to three blended (corners of a mesh triangle). */
 typedef struct TextureChoice {

@@ -6,6 +6,9 @@
 
 #include <string.h>
 
+/* With more objects the ray index is as good, with more lights views cost too much memory. */
+enum { VIEW_OBJECTS_MAX = 1024, VIEW_LIGHTS_MAX = 32 };
+
 /* Which surfaces the leaves of a shape have. */
 typedef struct LeafSummary {
     bool may_transmit, has_filter_besides_targets, is_closed;
@@ -54,6 +57,12 @@ static void describe_object(Tracer *tracer, uint32_t i)
     summarize(tracer->scene, object->shape, &sum);
     out->shape = object->shape;
     out->is_closed = sum.is_closed;
+    out->has_ball = object->shape->kind != SHAPE_SPHERE && bound_is_finite(object->bound);
+    if (out->has_ball) {
+        double radius = bound_radius(object->bound);
+        out->center = bound_center(object->bound);
+        out->radius2 = radius * radius * (1 + 1e-9);
+    }
     out->is_hidden[RAY_CAMERA] = object->no_image;
     out->is_hidden[RAY_REFRACTED] = object->no_image;
     out->is_hidden[RAY_PHOTON] = object->no_image;
@@ -66,6 +75,36 @@ static void describe_object(Tracer *tracer, uint32_t i)
         out->shadow = sum.has_filter_besides_targets ? SHADOW_FILTER : SHADOW_TARGET;
     if (sum.may_transmit && shape_is_solid(object->shape))
         tracer->clear[tracer->clear_count++] = i;
+}
+
+/* Rays to this light all end in one point. */
+static bool has_view(const Light *light)
+{
+    return light->kind != LIGHT_CYLINDER && !light->is_parallel && !light->is_shadowless &&
+           light->area.size1 == 0;
+}
+
+/* What may be seen from the eye and from the lights that are points. */
+static Status make_views(Tracer *tracer, const Bound *boxes, uint32_t count, Diag *diag)
+{
+    const Scene *scene = tracer->scene;
+    const uint32_t *objects = tracer->index_objects;
+    int lights = scene->light_count < VIEW_LIGHTS_MAX ? scene->light_count : VIEW_LIGHTS_MAX;
+    bool is_complete = true;
+    for (int i = 0; i < lights; i++) {
+        const Light *light = &scene->lights[i];
+        if (!has_view(light))
+            continue;
+        tracer->light_views[i] =
+            view_index_new(light->location, boxes, objects, count, scene->object_count);
+        is_complete &= tracer->light_views[i] != NULL;
+    }
+    if (scene->camera.kind == CAMERA_PERSPECTIVE && scene->camera.aperture == 0) {
+        tracer->camera_view =
+            view_index_new(scene->camera.location, boxes, objects, count, scene->object_count);
+        is_complete &= tracer->camera_view != NULL;
+    }
+    return is_complete ? OK : diag_no_memory(diag, "the views of eye and lights");
 }
 
 /* Sort the objects into those with a box and those without; an empty box is never met. */
@@ -95,6 +134,8 @@ static Status index_objects(Tracer *tracer, int threads, Diag *diag)
     }
     if (bounded > 0)
         status = box_index_new(diag, boxes, bounded, threads, &tracer->index);
+    if (status == OK && bounded > 0 && bounded <= VIEW_OBJECTS_MAX)
+        status = make_views(tracer, boxes, bounded, diag);
 done:
     mem_free(boxes);
     return status;
@@ -111,7 +152,8 @@ Status tracer_new(const Scene *scene, const Plan *plan, int threads, Diag *diag,
     tracer->bound = BOUND_EMPTY;
     tracer->objects = mem_array((size_t)scene->object_count + 1, sizeof *tracer->objects);
     tracer->clear = mem_array((size_t)scene->object_count + 1, sizeof *tracer->clear);
-    if (!tracer->objects || !tracer->clear) {
+    tracer->light_views = mem_array((size_t)scene->light_count + 1, sizeof *tracer->light_views);
+    if (!tracer->objects || !tracer->clear || !tracer->light_views) {
         tracer_free(tracer);
         return diag_no_memory(diag, "the tracer");
     }
@@ -135,6 +177,10 @@ void tracer_free(Tracer *tracer)
     if (!tracer)
         return;
     box_index_free(tracer->index);
+    view_index_free(tracer->camera_view);
+    for (int i = 0; tracer->light_views && i < tracer->scene->light_count; i++)
+        view_index_free(tracer->light_views[i]);
+    mem_free(tracer->light_views);
     mem_free(tracer->index_objects);
     mem_free(tracer->unbounded);
     mem_free(tracer->clear);

@@ -515,6 +515,76 @@ static void test_visibility_by_kind(void **state)
     world_done(&w);
 }
 
+/* The views of the eye and of a light change no answer. */
+static void test_views_agree_with_the_index(void **state)
+{
+    (void)state;
+    for (int crowd = 0; crowd < 2; crowd++) {
+        World w;
+        world_init(&w);
+        Rng rng = rng_at(7, 0, (uint64_t)crowd);
+        V3 eye = v3(0.1, 2.5, -4), lamp = v3(-1.3, 3.1, 0.7);
+        w.lights[0] = (Light){.kind = LIGHT_POINT, .location = lamp, .color = {1, 1, 1}};
+        w.scene.camera.location = eye;
+        const Texture *red = emitter(&w, 1, 0, 0);
+        const Texture *half = flat(&w, (Color5){1, 0.5f, 1, 0.5f, 0.25f}, &dull);
+        for (int i = 0; i < (crowd ? 60 : 12); i++) {
+            V3 u = v3(rng_double(&rng), rng_double(&rng), rng_double(&rng));
+            V3 c = v3(6 * u.x - 3, 3 * u.y, 6 * u.z - 3);
+            double size = 0.05 + 0.5 * rng_double(&rng);
+            Shape *shape = i % 3 ? shape_sphere(w.scene.arena, c, size)
+                                 : box(&w, c, v3_add(c, v3(size, 3 * size, 0.5 * size)));
+            world_add(&w, shape, i % 4 ? red : half, &air);
+        }
+        world_add(&w, shape_plane(w.scene.arena, v3(0, 1, 0), 0), red, &air);
+        world_ready(&w);
+        int hits = 0, shadows = 0;
+        for (int i = 0; i < 20000; i++) {
+            Hit a, b;
+            Ray ray = {eye, warp_sphere((V2){rng_double(&rng), rng_double(&rng)}), 0, INFINITY};
+            bool is_hit = trace_closest(&w.thread, &ray, RAY_CAMERA, &a);
+            assert_int_equal(is_hit, trace_closest(&w.thread, &ray, RAY_REFRACTED, &b));
+            if (!is_hit)
+                continue;
+            hits++;
+            assert_true(a.t == b.t && a.object == b.object);
+            LightSample light = light_at(&w.lights[0], lamp, a.point.p);
+            Rgb by_view =
+                trace_shadow(&w.thread, &a.point, light.to_light, light.distance, 0, false);
+            Rgb by_index =
+                trace_shadow(&w.thread, &a.point, light.to_light, light.distance, -1, false);
+            assert_memory_equal(&by_view, &by_index, sizeof by_view);
+            shadows += by_view.r < 1;
+        }
+        assert_true(hits > 10000 && shadows > 1000 && shadows < hits);
+        world_done(&w);
+    }
+}
+
+/* The ends of a cube of directions: axes, edges and corners. */
+static void test_views_at_edges(void **state)
+{
+    (void)state;
+    World w;
+    world_init(&w);
+    V3 eye = v3(0, 0, 0);
+    w.scene.camera.location = eye;
+    for (int i = 0; i < 27; i++) {
+        V3 c = v3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+        if (i != 13)
+            world_add(&w, shape_sphere(w.scene.arena, c, 1e-6), emitter(&w, 1, 1, 1), &air);
+    }
+    world_ready(&w);
+    for (int i = 0; i < 27; i++) {
+        V3 c = v3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+        Ray ray = {eye, v3_unit(c), 0, INFINITY};
+        Hit hit;
+        if (i != 13)
+            assert_true(trace_closest(&w.thread, &ray, RAY_CAMERA, &hit));
+    }
+    world_done(&w);
+}
+
 static void test_empty_scene(void **state)
 {
     (void)state;
@@ -743,6 +813,8 @@ int main(void)
         cmocka_unit_test(test_smooth_normal_at_a_silhouette),
         cmocka_unit_test(test_coincident_objects),
         cmocka_unit_test(test_visibility_by_kind),
+        cmocka_unit_test(test_views_agree_with_the_index),
+        cmocka_unit_test(test_views_at_edges),
         cmocka_unit_test(test_empty_scene),
         cmocka_unit_test(test_no_self_hits),
         cmocka_unit_test(test_filtered_shadows),
