@@ -5,6 +5,8 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/parser_int.h"
 
+enum { MEMORY_CHECK_TOKENS = 1024 };
+
 Frame *frame_top(Parser *p)
 {
     return &p->frames[p->frame_count - 1];
@@ -81,11 +83,14 @@ void nest_leave(Parser *p)
 /* --- tokens as they stand ------------------------------------------------------------------------
  */
 
+/* Count against the limits; memory only now and then. */
 static void count_token(Parser *p, Span span)
 {
     if (--p->tokens_left < 0)
         parse_fail(p, span, "more than %ld tokens evaluated; raise with --max-tokens",
                    p->tokens_max);
+    if (p->tokens_left % MEMORY_CHECK_TOKENS == 0 && arena_bytes(p->scene->arena) > p->bytes_max)
+        parse_fail(p, span, "the scene takes more than %zu bytes of memory", p->bytes_max);
 }
 
 static void take(Parser *p, const Token *token)

@@ -129,6 +129,7 @@ struct Parser {
     TokenKind last_kind;
     int nest, braces;
     long tokens_left, tokens_max;
+    size_t bytes_max; /* of the scene arena */
 
     Symbol *free_symbols;
     Argument *arguments;   /* of calls being made, innermost last */

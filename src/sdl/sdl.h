@@ -19,6 +19,7 @@ typedef struct SdlOptions {
     int width, height;      /* for image_width and image_height */
     double clock;
     long max_tokens;        /* tokens evaluated; 0: SDL_MAX_TOKENS */
+    size_t max_bytes;       /* of the scene in memory while it is read; 0: what the machine has */
     int threads;            /* for building mesh indices */
 } SdlOptions;
 

@@ -8,9 +8,13 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* The language a scene without #version is taken to be for what depends on gamma. */
 #define VERSION_UNSAID 3.62
+
+/* The memory of a machine that does not say how much it has. */
+#define BYTES_UNKNOWN ((size_t)8 << 30)
 
 /* What a load is asked for; text NULL: read the file. */
 typedef struct Request {
@@ -129,6 +133,13 @@ static Status parse_all(Parser *p, const Request *request)
     return OK;
 }
 
+/* Return the bytes of memory this machine has. */
+static size_t machine_bytes(void)
+{
+    long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
+    return pages > 0 && size > 0 ? (size_t)pages * (size_t)size : BYTES_UNKNOWN;
+}
+
 static Parser *parser_new(Diag *diag, const SdlOptions *options, Scene *scene, Arena *arena)
 {
     Parser *p = ARENA_NEW(arena, Parser);
@@ -142,6 +153,7 @@ static Parser *parser_new(Diag *diag, const SdlOptions *options, Scene *scene, A
     p->version = 3.7;
     p->tokens_max = options->max_tokens > 0 ? options->max_tokens : SDL_MAX_TOKENS;
     p->tokens_left = p->tokens_max;
+    p->bytes_max = options->max_bytes ? options->max_bytes : machine_bytes();
     strmap_init(&p->files, arena);
     return p;
 }
