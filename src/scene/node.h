@@ -41,7 +41,7 @@ struct Node {
     int child_count;
     Node **clips, **bounds;
     int clip_count, bound_count;
-    Light *light;               /* of a NODE_LIGHT */
+    Light *light;               /* of a NODE_LIGHT; its looks_like is its only child */
     const Texture *texture, *inner_texture;
     const Texture *const *mesh_textures;
     int mesh_texture_count;

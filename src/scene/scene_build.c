@@ -100,6 +100,26 @@ static Bound bound_of_nodes(Node *const *nodes, int count)
     return bound;
 }
 
+/* What a CSG object says of photons holds for its members, item by item: target and
+ * pass_through once said stay, collect is off where anyone says so. */
+static PhotonFlags photons_of(const Node *node, const PhotonFlags *parent)
+{
+    if (!node->has_photons)
+        return *parent;
+    PhotonFlags flags = node->photons;
+    if (parent->is_target) {
+        flags.is_target = true;
+        flags.spacing_factor = parent->spacing_factor;
+    }
+    if (parent->reflection != TRI_UNSET)
+        flags.reflection = parent->reflection;
+    if (parent->refraction != TRI_UNSET)
+        flags.refraction = parent->refraction;
+    flags.is_collecting &= parent->is_collecting;
+    flags.is_pass_through |= parent->is_pass_through;
+    return flags;
+}
+
 static Looks looks_of(const Node *node, const Looks *parent)
 {
     Looks looks = *parent;
@@ -109,8 +129,7 @@ static Looks looks_of(const Node *node, const Looks *parent)
         looks.inner_texture = node->inner_texture;
     if (node->interior)
         looks.interior = node->interior;
-    if (node->has_photons)
-        looks.photons = node->photons;
+    looks.photons = photons_of(node, &parent->photons);
     if (node->hollow != TRI_UNSET)
         looks.hollow = node->hollow;
     if (looks.double_illuminate != TRI_ON && node->double_illuminate != TRI_UNSET)
@@ -332,6 +351,26 @@ static void add_object(Finisher *f, const Node *node, const Looks *parent)
                                       .name = looks.name ? looks.name : node->name};
 }
 
+static Looks no_looks(void)
+{
+    return (Looks){.photons = PHOTON_FLAGS_DEFAULT, .bound = BOUND_ALL};
+}
+
+static void add_top(Finisher *f, const Node *node, const Looks *parent);
+
+/* Add what the lights in a node look like: objects of their own, which cast no shadow. */
+static void add_looks_like(Finisher *f, const Node *node)
+{
+    Looks looks = no_looks();
+    looks.no_shadow = true;
+    for (int i = 0; i < node->child_count; i++) {
+        if (node->kind == NODE_LIGHT)
+            add_top(f, node->children[i], &looks);
+        else
+            add_looks_like(f, node->children[i]);
+    }
+}
+
 /* Add a node at top level: unions without clips fall apart into their members. */
 static void add_top(Finisher *f, const Node *node, const Looks *parent)
 {
@@ -339,12 +378,14 @@ static void add_top(Finisher *f, const Node *node, const Looks *parent)
         return;
     if (node->kind == NODE_LIGHT) {
         add_light(f, node);
+        add_looks_like(f, node);
         return;
     }
     bool is_dissolved = node->kind == NODE_CSG && node->csg == SHAPE_UNION && !node->is_inverted &&
                         node->clip_count == 0;
     if (!is_dissolved) {
         add_object(f, node, parent);
+        add_looks_like(f, node);
         return;
     }
     Looks looks = looks_of(node, parent);
@@ -357,7 +398,7 @@ static void walk(Finisher *f, const SceneBuild *build, bool is_counting)
     f->is_counting = is_counting;
     f->scene->object_count = f->scene->surface_count = 0;
     f->scene->light_count = 0;
-    const Looks none = {.photons = PHOTON_FLAGS_DEFAULT, .bound = BOUND_ALL};
+    const Looks none = no_looks();
     for (size_t i = 0; i < build->node_count; i++)
         add_top(f, build->nodes[i], &none);
 }

@@ -193,6 +193,25 @@ static bool read_aim_item(Parser *p, Light *light)
     }
 }
 
+/* looks_like { OBJECT modifiers }: the object is moved to where the light is. */
+static void read_looks_like(Parser *p, Node *light)
+{
+    Token word = read_open(p);
+    if (light->child_count)
+        parse_fail(p, word.span, "a light can look like one object only");
+    Node *node = read_object(p);
+    if (!node)
+        parse_fail_here(p, "in looks_like, which wants an object first");
+    read_object_modifiers(p, node, KW_OBJECT);
+    Xform move = xform_translate(light->light->location);
+    if (!node_transform(parse_arena(p), node, &move))
+        parse_no_null(p, NULL);
+    light->children = parse_copy(p, &node, sizeof(Node *));
+    light->child_count = 1;
+    light->size += node->size;
+    light->depth = node->depth + 1;
+}
+
 static void read_light_item(Parser *p, Node *node)
 {
     Light *light = node->light;
@@ -223,7 +242,8 @@ static void read_light_item(Parser *p, Node *node)
         parse_flag(p);
         break;
     case KW_LOOKS_LIKE:
-        parse_fail_not_yet(p, head.span, "looks_like");
+        read_looks_like(p, node);
+        break;
     case KW_PROJECTED_THROUGH:
         parse_fail_not_yet(p, head.span, "projected_through");
     case KW_COLOR_MAP:

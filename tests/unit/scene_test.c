@@ -241,10 +241,35 @@ static void test_children_take_what_they_lack(void **state)
     assert_true(s[0].no_image && s[1].no_image && s[2].no_image);
     assert_true(!s[0].no_shadow && s[2].no_shadow);
     assert_true(s[0].is_double_illuminated && s[2].is_double_illuminated);
-    assert_true(s[0].is_target && s[1].is_target && !s[2].is_target);
+    assert_true(s[0].is_target && s[1].is_target && s[2].is_target);
+    assert_true(s[2].photons.refraction == TRI_ON);
     assert_true(s[0].photons.is_collecting && !s[2].photons.is_collecting);
-    assert_true(w->scene->objects[0].is_target && !w->scene->objects[2].is_target);
+    assert_true(w->scene->objects[0].is_target);
     assert_true(w->scene->objects[0].no_image);
+    world_free(w);
+}
+
+/* Measured with POV-Ray 3.7.0.10 by the photons it shoots. */
+static void test_photon_items_of_parents_override(void **state)
+{
+    (void)state;
+    World *w = world_new();
+    Node *child = ball(w, v3(0, 0, 0));
+    child->has_photons = true;
+    child->photons = PHOTON_FLAGS_DEFAULT;
+    child->photons.is_target = true;
+    child->photons.refraction = TRI_ON;
+    child->photons.reflection = TRI_ON;
+    child->photons.is_collecting = false;
+    Node *parent = group(w, SHAPE_UNION, 1, &child);
+    parent->has_photons = true;
+    parent->photons = PHOTON_FLAGS_DEFAULT;
+    parent->photons.refraction = TRI_OFF;
+    scene_build_add(&w->build, parent);
+    assert_int_equal(finish(w), OK);
+    const PhotonFlags *photons = &w->scene->surfaces[0].photons;
+    assert_true(photons->is_target && !photons->is_collecting);
+    assert_true(photons->refraction == TRI_OFF && photons->reflection == TRI_ON);
     world_free(w);
 }
 
@@ -345,6 +370,29 @@ static void test_lights_come_out_of_objects(void **state)
     assert_string_equal(w->scene->lights[0].name, "Sun");
     assert_string_equal(w->scene->lights[1].name, "light 2");
     assert_int_equal(w->scene->objects[0].shape->child_count, 2);
+    world_free(w);
+}
+
+static void test_lamps_look_like_objects_without_shadow(void **state)
+{
+    (void)state;
+    World *w = world_new();
+    Node *bulb = ball(w, v3(0, 5, 0)), *shining = lamp(w, v3(0, 5, 0));
+    shining->children = &bulb;
+    shining->child_count = 1;
+    Node *inside[3] = {ball(w, v3(0, 0, 0)), shining, ball(w, v3(0.5, 0, 0))};
+    Node *both = group(w, SHAPE_INTERSECTION, 3, inside);
+    both->texture = paint(w, 0.5f);
+    Xform move = xform_translate(v3(1, 0, 0));
+    assert_true(node_transform(w->scene->arena, both, &move));
+    scene_build_add(&w->build, both);
+    assert_int_equal(finish(w), OK);
+    assert_int_equal(w->scene->light_count, 1);
+    assert_int_equal(w->scene->object_count, 2);
+    assert_int_equal(w->scene->surface_count, 3);
+    assert_true(w->scene->objects[1].no_shadow && !w->scene->objects[0].no_shadow);
+    assert_int_equal(w->scene->surfaces[2].object, 1);
+    assert_true(shape_is_inside(w->scene->objects[1].shape, v3(1, 5, 0)));
     world_free(w);
 }
 
@@ -505,11 +553,13 @@ int main(void)
         cmocka_unit_test(test_difference_of_one_is_that_one),
         cmocka_unit_test(test_intersection_of_things_apart_is_nothing),
         cmocka_unit_test(test_children_take_what_they_lack),
+        cmocka_unit_test(test_photon_items_of_parents_override),
         cmocka_unit_test(test_default_texture_is_that_of_the_placing),
         cmocka_unit_test(test_old_ior_of_a_finish_makes_an_interior),
         cmocka_unit_test(test_copies_are_deep),
         cmocka_unit_test(test_textures_move_with_what_was_written_before),
         cmocka_unit_test(test_lights_come_out_of_objects),
+        cmocka_unit_test(test_lamps_look_like_objects_without_shadow),
         cmocka_unit_test(test_light_moves_with_its_aim_and_area),
         cmocka_unit_test(test_user_bounds_serve_infinite_objects_only),
         cmocka_unit_test(test_specular_objects_become_targets_when_none_is_marked),
