@@ -20,7 +20,10 @@ typedef struct Sweep {
     uint8_t *inside; /* per child */
     int child_count, inside_count;
     int written; /* results so far, from the start of items' range */
+    int lister;  /* the only child with crossings, or one of the two below */
 } Sweep;
+
+enum { NO_CHILD = -1, MANY_CHILDREN = -2 };
 
 static bool is_inside_node(const Sweep *s)
 {
@@ -36,6 +39,13 @@ static bool is_bare(const Sweep *s, uint32_t child)
     return s->rule == RULE_UNION || others == 0;
 }
 
+/* Do the other children leave a child as it is? */
+static bool is_neutral(const Sweep *s, int child)
+{
+    int others = s->inside_count - s->inside[child];
+    return others == (s->rule == RULE_INTERSECTION ? s->child_count - 1 : 0);
+}
+
 static void step_over(Sweep *s, const Crossing *c)
 {
     if (c->change == 0)
@@ -45,18 +55,20 @@ static void step_over(Sweep *s, const Crossing *c)
     s->inside[c->child] = now;
 }
 
-/* An event of one child alone. */
-static void sweep_single(Sweep *s, const Crossing *c)
+/* An event of one child alone: item `at`. */
+static void sweep_single(Sweep *s, int at)
 {
-    bool before = is_inside_node(s), bare = is_bare(s, c->child);
+    const Crossing *c = &s->items[at];
+    bool before = is_inside_node(s), is_kept = is_bare(s, c->child);
     step_over(s, c);
-    if (!bare)
+    bool is_wall = before == is_inside_node(s);
+    if (!is_kept || (is_wall && !c->is_visible))
         return;
-    Crossing kept = *c;
-    if (before == is_inside_node(s))
-        kept.change = 0;
-    if (kept.change || kept.is_visible)
-        s->items[s->written++] = kept;
+    Crossing *kept = &s->items[s->written++];
+    if (kept != c)
+        *kept = *c;
+    if (is_wall)
+        kept->change = 0;
 }
 
 /* Return the crossing that lends an event its look: going the way of the event if it has one
@@ -114,7 +126,8 @@ static bool is_before(const Crossing *a, const Crossing *b)
 static void sort_crossings(Crossing *items, int count)
 {
     static const int gaps[] = {28703, 10301, 4193, 1073, 281, 77, 23, 8, 1};
-    for (size_t g = 0; g < sizeof gaps / sizeof *gaps; g++) {
+    enum { GAPS = sizeof gaps / sizeof *gaps };
+    for (int g = count > 32 ? 0 : GAPS - 1; g < GAPS; g++) {
         for (int i = gaps[g]; i < count; i++) {
             if (!is_before(&items[i], &items[i - gaps[g]]))
                 continue;
@@ -145,10 +158,8 @@ static void sweep(ShapeScratch *scratch, int base, Sweep *s)
             sweep_together(s, i, next);
             i = next;
         }
-        for (; i < next; i++) {
-            Crossing c = s->items[i];
-            sweep_single(s, &c);
-        }
+        for (; i < next; i++)
+            sweep_single(s, i);
     }
     scratch->count = base + s->written;
 }
@@ -175,42 +186,76 @@ static void tag(ShapeScratch *scratch, int from, uint32_t child)
         scratch->items[i].child = child;
 }
 
+/* What is inside a child cannot reach beyond its first and last crossing if the line starts and
+ * ends outside of it: nothing else is wanted of an intersection.  The margin is for crossings of
+ * others in the same place. */
+static void narrow_to_list(Line *line, const ShapeScratch *scratch, int from)
+{
+    const Crossing *first = &scratch->items[from], *last = &scratch->items[scratch->count - 1];
+    double near = first->t - 8 * first->t_error, far = last->t + 8 * last->t_error;
+    line->near = near > line->near ? near : line->near;
+    line->far = far < line->far ? far : line->far;
+}
+
+/* Does a list that starts outside end outside too, and begin with an entry? */
+static bool is_closed_list(const ShapeScratch *scratch, int from)
+{
+    return scratch->items[from].change > 0 && scratch->items[scratch->count - 1].change < 0;
+}
+
+/* List the children of a node; returns false if the line never enters an intersection. */
+static bool list_children(const Shape *node, Line line, ShapeScratch *scratch, long first, Sweep *s)
+{
+    for (int i = 0; i < node->child_count; i++) {
+        int from = scratch->count;
+        bool inside = csg_list(node->children[i], &line, scratch);
+        scratch->states[first + i] = inside;
+        s->inside_count += inside;
+        if (scratch->count > from) {
+            s->lister = s->lister == NO_CHILD ? i : MANY_CHILDREN;
+            for (int k = from; k < scratch->count; k++)
+                scratch->items[k].child = (uint32_t)i;
+        }
+        if (s->rule != RULE_INTERSECTION || inside)
+            continue;
+        if (scratch->count == from)
+            return false;
+        if (is_closed_list(scratch, from))
+            narrow_to_list(&line, scratch, from);
+    }
+    return true;
+}
+
 /* List a node's children and merge them. */
-static bool node_list(const Shape *node, const Ray *ray, ShapeScratch *scratch)
+static bool node_list(const Shape *node, const Line *line, ShapeScratch *scratch)
 {
     /* Inner walls of a union disappear when it is turned inside out. */
     Sweep s = {.rule = node->kind == SHAPE_INTERSECTION                  ? RULE_INTERSECTION
                        : node->kind == SHAPE_UNION && !node->is_inverted ? RULE_UNION
                                                                          : RULE_MERGE,
-               .child_count = node->child_count};
+               .child_count = node->child_count,
+               .lister = NO_CHILD};
     int base = scratch->count;
     long first = push_states(scratch, node->child_count);
     if (first < 0)
         return false;
-    bool is_empty = false;
-    for (int i = 0; i < node->child_count && !is_empty; i++) {
-        int from = scratch->count;
-        bool inside = csg_list(node->children[i], ray, scratch);
-        scratch->states[first + i] = inside;
-        s.inside_count += inside;
-        tag(scratch, from, (uint32_t)i);
-        /* A child the line never enters leaves nothing of an intersection. */
-        is_empty = s.rule == RULE_INTERSECTION && !inside && scratch->count == from;
-    }
-    if (is_empty) {
+    bool inside_before = false;
+    if (list_children(node, *line, scratch, first, &s)) {
+        s.inside = scratch->states + first;
+        inside_before = is_inside_node(&s);
+        /* If only one child has crossings, and the others leave it as it is, all is done. */
+        bool is_done = s.lister >= 0 && is_neutral(&s, s.lister);
+        if (!is_done)
+            sweep(scratch, base, &s);
+    } else {
         scratch->count = base;
-        scratch->state_count = (size_t)first;
-        return false;
     }
-    s.inside = scratch->states + first;
-    bool inside_before = is_inside_node(&s);
-    sweep(scratch, base, &s);
     scratch->state_count = (size_t)first;
     return inside_before;
 }
 
 /* Cut the list from `base` on to the inside of the clips, whose own surfaces are not seen. */
-static bool clip_list(const Shape *shape, const Ray *ray, ShapeScratch *scratch, int base,
+static bool clip_list(const Shape *shape, const Line *line, ShapeScratch *scratch, int base,
                       bool is_inside)
 {
     Sweep s = {
@@ -222,7 +267,7 @@ static bool clip_list(const Shape *shape, const Ray *ray, ShapeScratch *scratch,
     tag(scratch, base, 0);
     for (int i = 0; i < shape->clip_count; i++) {
         int from = scratch->count;
-        bool inside = csg_list(shape->clips[i], ray, scratch);
+        bool inside = csg_list(shape->clips[i], line, scratch);
         scratch->states[first + i + 1] = inside;
         s.inside_count += inside;
         tag(scratch, from, (uint32_t)i + 1);
@@ -236,19 +281,20 @@ static bool clip_list(const Shape *shape, const Ray *ray, ShapeScratch *scratch,
     return inside_before;
 }
 
-bool csg_list(const Shape *shape, const Ray *ray, ShapeScratch *scratch)
+bool csg_list(const Shape *shape, const Line *line, ShapeScratch *scratch)
 {
-    if (shape->is_finished && !line_meets(&shape->reach, ray))
+    Line part = *line;
+    if (shape->is_finished && !line_cut(&part, &shape->reach))
         return shape->is_inside_beyond;
     int base = scratch->count;
-    bool is_inside =
-        shape->kind < SHAPE_UNION ? leaf_list(shape, ray, scratch) : node_list(shape, ray, scratch);
+    bool is_inside = shape->kind < SHAPE_UNION ? leaf_list(shape, line->ray, scratch)
+                                               : node_list(shape, &part, scratch);
     if (shape->is_inverted) {
         is_inside = !is_inside;
         for (int i = base; i < scratch->count; i++)
             crossing_invert(&scratch->items[i]);
     }
     if (shape->clip_count)
-        is_inside = clip_list(shape, ray, scratch, base, is_inside);
+        is_inside = clip_list(shape, &part, scratch, base, is_inside);
     return is_inside;
 }

@@ -67,12 +67,22 @@ static bool leaf_closest(const Shape *shape, const Ray *ray, Crossing *out)
     return false;
 }
 
+/* Start the scratch afresh and list what crosses a part of the line. */
+static bool list_part(const Shape *shape, const Ray *ray, double near, double far,
+                      ShapeScratch *scratch)
+{
+    Line line = {ray, v3(1 / ray->d.x, 1 / ray->d.y, 1 / ray->d.z), near, far};
+    scratch->count = 0;
+    scratch->state_count = 0;
+    scratch->is_overflown = false;
+    return csg_list(shape, &line, scratch);
+}
+
 static bool list_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Crossing *out)
 {
-    CrossList list;
-    shape_crossings(shape, ray, scratch, &list);
-    for (int i = 0; i < list.count; i++) {
-        const Crossing *c = &list.items[i];
+    list_part(shape, ray, ray->tmin, ray->tmax, scratch);
+    for (int i = 0; i < scratch->count; i++) {
+        const Crossing *c = &scratch->items[i];
         if (c->is_visible && c->t > ray->tmin && c->t < ray->tmax) {
             *out = *c;
             return true;
@@ -95,10 +105,7 @@ bool shape_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Cr
 
 void shape_crossings(const Shape *shape, const Ray *ray, ShapeScratch *scratch, CrossList *out)
 {
-    scratch->count = 0;
-    scratch->state_count = 0;
-    scratch->is_overflown = false;
-    out->is_inside_before = csg_list(shape, ray, scratch);
+    out->is_inside_before = list_part(shape, ray, -INFINITY, INFINITY, scratch);
     out->items = scratch->items;
     out->count = scratch->count;
     out->is_overflown = scratch->is_overflown;

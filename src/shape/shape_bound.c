@@ -116,25 +116,31 @@ Bound shape_bound(const Shape *shape)
     return bound_intersect(seen, reach);
 }
 
-/* Narrow [*near, *far] to a slab.  The t are exact to a few of their own ulps. */
-static inline bool narrow(double o, double d, double lo, double hi, double *near, double *far)
-{
-    if (d == 0)
-        return o >= lo && o <= hi;
-    double inverse = 1 / d, t0 = (lo - o) * inverse, t1 = (hi - o) * inverse;
-    double first = t0 < t1 ? t0 : t1, last = t0 < t1 ? t1 : t0;
-    first -= 4 * EPS_DOUBLE * fabs(first);
-    last += 4 * EPS_DOUBLE * fabs(last);
-    /* An infinite side gives infinities, or no number at all: neither narrows. */
-    *near = first > *near ? first : *near;
-    *far = last < *far ? last : *far;
-    return !(*near > *far);
-}
+/* Cut [near, far] to a slab.  A line along the slab has an infinite inverse: then the t are
+ * infinite too, or, on a side, no numbers, and cut nothing. */
+#define CUT(axis)                                                                                  \
+    do {                                                                                           \
+        bool is_back = line->inverse.axis < 0;                                                     \
+        double first = ((is_back ? box->hi.axis : box->lo.axis) - o.axis) * line->inverse.axis;    \
+        double last = ((is_back ? box->lo.axis : box->hi.axis) - o.axis) * line->inverse.axis;     \
+        near = first > near ? first : near;                                                        \
+        far = last < far ? last : far;                                                             \
+    } while (0)
 
-bool line_meets(const Bound *b, const Ray *ray)
+bool line_cut(Line *line, const Bound *box)
 {
-    double near = -INFINITY, far = INFINITY;
-    return narrow(ray->o.x, ray->d.x, b->lo.x, b->hi.x, &near, &far) &&
-           narrow(ray->o.y, ray->d.y, b->lo.y, b->hi.y, &near, &far) &&
-           narrow(ray->o.z, ray->d.z, b->lo.z, b->hi.z, &near, &far);
+    V3 o = line->ray->o;
+    double near = line->near, far = line->far;
+    CUT(x);
+    CUT(y);
+    CUT(z);
+    /* The t are exact to a few of their own ulps. */
+    near -= 8 * EPS_DOUBLE * fabs(near);
+    far += 8 * EPS_DOUBLE * fabs(far);
+    if (near > far)
+        return false;
+    line->near = near;
+    line->far = far;
+    return true;
 }
+#undef CUT

@@ -129,8 +129,16 @@ static inline Bound bound_pad(Bound b)
     return (Bound){v3_sub(b.lo, pad), v3_add(b.hi, pad)};
 }
 
-/* Does the line of a ray meet the box?  Never says no by rounding. */
-bool line_meets(const Bound *b, const Ray *ray);
+/* The part of a ray's line whose crossings are wanted: what happens outside [near, far] may be
+ * told wrong. */
+typedef struct Line {
+    const Ray *ray;
+    V3 inverse; /* of the direction */
+    double near, far;
+} Line;
+
+/* Narrow a line to a box; false when it misses it.  Never says no by rounding. */
+bool line_cut(Line *line, const Bound *box);
 
 /* Return the box that holds every crossing of a shape; *is_inside_beyond: the state of what
  * lies outside it. */
@@ -157,9 +165,9 @@ void scratch_push(ShapeScratch *scratch, const Crossing *crossing);
 bool leaf_list(const Shape *shape, const Ray *ray, ShapeScratch *scratch);
 bool mesh_list(const Shape *shape, const Ray *ray, ShapeScratch *scratch);
 
-/* Push the crossings of any shape, inversion and clips applied; returns whether the line starts
- * inside. */
-bool csg_list(const Shape *shape, const Ray *ray, ShapeScratch *scratch);
+/* Push the crossings of any shape along a line, inversion and clips applied; returns whether the
+ * line starts inside. */
+bool csg_list(const Shape *shape, const Line *line, ShapeScratch *scratch);
 
 /* Fill a crossing from a leaf's hit (no inversion applied). */
 static inline void crossing_fill(const Shape *leaf, const LeafHit *hit, Crossing *out)

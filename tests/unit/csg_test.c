@@ -363,6 +363,27 @@ static void check_walk(const Shape *shape, const Ray *ray, const CrossList *list
     }
 }
 
+/* The search along a part of the line finds what the whole list has there. */
+static void check_closest(const Shape *shape, Ray ray, const CrossList *list, Rng *rng)
+{
+    Crossing found;
+    ShapeScratch *other = shape_scratch_new();
+    ray.tmin = 4 * rng_double(rng) - 1;
+    ray.tmax = rng_u32(rng) % 2 ? INFINITY : ray.tmin + 3 * rng_double(rng);
+    int first = 0;
+    while (first < list->count &&
+           !(list->items[first].is_visible && list->items[first].t > ray.tmin))
+        first++;
+    bool is_hit = first < list->count && list->items[first].t < ray.tmax;
+    assert_int_equal(shape_closest(shape, &ray, other, &found), is_hit);
+    if (is_hit) {
+        assert_true(found.t == list->items[first].t);
+        assert_ptr_equal(found.leaf, list->items[first].leaf);
+        assert_int_equal(found.change, list->items[first].change);
+    }
+    shape_scratch_free(other);
+}
+
 /* Random trees: the list agrees with membership, with and without the derived bounds, and
  * what is seen lies in the box. */
 static void test_random_trees(void **state)
@@ -393,6 +414,7 @@ static void test_random_trees(void **state)
             }
             check_walk(plain, &ray, &a);
             check_walk(fast, &ray, &b);
+            check_closest(fast, ray, &b, &rng);
             shape_scratch_free(other);
         }
     }
