@@ -80,22 +80,22 @@ static const char *search_folder(Parser *p, int i, char out[PATH_MAX_BYTES], boo
     return own;
 }
 
-/* Replace the last component of `path` by the name of a file that differs only in case. */
+/* Replace the last component of `path` by the name of a file that differs only in case; of
+ * several the first by their bytes, whatever order the folder has. */
 static bool match_case(char path[PATH_MAX_BYTES])
 {
-    char folder[PATH_MAX_BYTES];
+    char folder[PATH_MAX_BYTES], best[PATH_MAX_BYTES] = "";
     char *base = path + (path_base(path) - path);
     folder_of(folder, path);
     DIR *dir = opendir(folder[0] ? folder : ".");
-    bool is_found = false;
-    for (struct dirent *entry; dir && !is_found && (entry = readdir(dir));) {
-        is_found = strcasecmp(entry->d_name, base) == 0;
-        if (is_found)
-            memcpy(base, entry->d_name, strlen(base));
-    }
+    for (struct dirent *entry; dir && (entry = readdir(dir));)
+        if (strcasecmp(entry->d_name, base) == 0 && (!best[0] || strcmp(entry->d_name, best) < 0))
+            memcpy(best, entry->d_name, strlen(base) + 1);
     if (dir)
         closedir(dir);
-    return is_found;
+    if (best[0])
+        strcpy(base, best);
+    return best[0] != 0;
 }
 
 /* Look for one spelling of the name in every folder; returns the path in `out`. */
