@@ -16,7 +16,7 @@ enum { TRIES_MAX = 5000 };
 static const char scene_text[] =
     "#version 3.7;\n"
     "global_settings { assumed_gamma 1 photons { count 100 } }\n"
-    "#include \"tests/lang/include/sub/deep.inc\"\n"
+    "#include \"tests/lang/include_directive/sub/deep.inc\"\n"
     "#declare A = array[3][4];\n"
     "#declare S = concat(\"a\", str(1, 0, 2), strupr(\"b\"));\n"
     "#macro Ball(C, R) sphere { C, R texture { pigment { checker rgb 1 rgb 0 scale 2 } } } #end\n"
