@@ -6,12 +6,7 @@
 
 static void set_defaults(Scene *scene)
 {
-    scene->camera = (Camera){.direction = {0, 0, 1},
-                             .right = {1.33, 0, 0},
-                             .up = {0, 1, 0},
-                             .focal_distance = 1,
-                             .blur_confidence = 0.9,
-                             .blur_variance = 1e-4};
+    scene->camera = CAMERA_DEFAULT;
     scene->background.color.transmit = 1;
     scene->sky.emission = RGB_WHITE;
     scene->settings = (SceneSettings){.version = 3.7,

@@ -88,6 +88,14 @@ typedef struct Camera {
     Span span;                         /* SPAN_NONE: the default camera */
 } Camera;
 
+#define CAMERA_DEFAULT                                                                             \
+    ((Camera){.direction = {0, 0, 1},                                                              \
+              .right = {1.33, 0, 0},                                                               \
+              .up = {0, 1, 0},                                                                     \
+              .focal_distance = 1,                                                                 \
+              .blur_confidence = 0.9,                                                              \
+              .blur_variance = 1e-4})
+
 /* global_settings { photons { ... } } and pms { ... } */
 typedef struct PhotonSettings {
     bool is_on;               /* photons{} was written */

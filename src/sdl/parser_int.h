@@ -145,8 +145,6 @@ struct Parser {
 
 /* --- parse_fail.c ------------------------------------------------------------------------------ */
 
-/* End the parse with a status whose message has been given. */
-noreturn void parse_fail_status(Parser *p, Status status);
 noreturn void parse_fail_memory(Parser *p);
 /* Fail on a word nobody knows: "unknown `what` ...; did you mean ...?" */
 noreturn void parse_fail_unknown(Parser *p, const Token *token, const char *what);

@@ -205,13 +205,6 @@ static void move_camera(Camera *c, const Xform *xform)
     c->up = xform_dir(xform, c->up);
 }
 
-static const Camera default_camera = {.direction = {0, 0, 1},
-                                      .right = {1.33, 0, 0},
-                                      .up = {0, 1, 0},
-                                      .focal_distance = 1,
-                                      .blur_confidence = 0.9,
-                                      .blur_variance = 1e-4};
-
 /* camera { NAME transforms }: the declared camera is finished; it can only be moved. */
 static const Camera *read_named_camera(Parser *p, Camera camera)
 {
@@ -234,7 +227,7 @@ const Camera *read_camera(Parser *p)
         return read_named_camera(p, camera);
     }
     CameraDraft d = {
-        .camera = default_camera, .sky = {0, 1, 0}, .look_at = {0, 0, 1}, .xform = XFORM_IDENTITY};
+        .camera = CAMERA_DEFAULT, .sky = {0, 1, 0}, .look_at = {0, 0, 1}, .xform = XFORM_IDENTITY};
     d.camera.span = word.span;
     if (parse_accept(p, KW_ORTHOGRAPHIC))
         d.camera.kind = CAMERA_ORTHOGRAPHIC;

@@ -188,11 +188,11 @@ static Node *finish_mesh(Parser *p, MeshDraft *d, Span span)
             m->uv_corners[i] = 0; /* triangles without uvs among others that have them */
     if (!d->has_texture)
         m->textures = NULL;
-    if (mesh_index(parse_diag(p), m, parse_options(p)->threads) != OK ||
-        !scene_add_mesh(parse_scene(p), m)) {
-        mesh_done(m);
+    if (!scene_add_mesh(parse_scene(p), m)) /* from here on scene_free frees its index */
         parse_no_null(p, NULL);
-    }
+    Status status = mesh_index(parse_diag(p), m, parse_options(p)->threads);
+    if (status != OK)
+        parse_fail_status(p, status);
     Node *node = read_leaf(p, shape_mesh(parse_arena(p), m));
     if (d->has_texture) {
         node->mesh_textures = (const Texture *const *)d->textures;

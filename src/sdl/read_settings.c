@@ -183,10 +183,9 @@ void read_pms_settings(Parser *p, PmsSettings *pms)
 static void read_assumed_gamma(Parser *p, SceneSettings *settings)
 {
     Token word = parse_next(p);
-    double gamma = 1;
     if (parse_accept(p, KW_SRGB))
         parse_fail_not_yet(p, word.span, "assumed_gamma srgb");
-    gamma = read_above_zero(p, "assumed_gamma");
+    double gamma = read_above_zero(p, "assumed_gamma");
     if (settings->has_assumed_gamma) {
         parse_warn(p, WARN_LANGUAGE, word.span, "assumed_gamma was given before: that one holds");
         return;

@@ -74,6 +74,8 @@ noreturn void parse_fail(Parser *p, Span span, const char *format, ...)
 noreturn void parse_fail_here(Parser *p, const char *where);
 /* Fail because the language has `what` at `span` and pms has not yet. */
 noreturn void parse_fail_not_yet(Parser *p, Span span, const char *what);
+/* End the parse with a status whose message has been given. */
+noreturn void parse_fail_status(Parser *p, Status status);
 void parse_warn(Parser *p, WarnKind kind, Span span, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
