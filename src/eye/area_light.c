@@ -23,6 +23,7 @@ typedef struct ShadowGrid {
     AreaFrame frame;
     int light_index;
     bool blocks_targets;
+    ShadowBundle bundle;
 } ShadowGrid;
 
 typedef struct GridRect {
@@ -44,6 +45,13 @@ AreaFrame area_frame(const Light *light, V3 to_light)
 static double grid_place(int k, int n, double jitter)
 {
     return n > 1 ? (k + jitter) / (n - 1) - 0.5 : 0;
+}
+
+/* How far from the middle a grid line may lie, parts of the axis. */
+static double grid_reach(int n, bool has_jitter)
+{
+    double jitter = has_jitter && n > 1 ? 0.5 / (n - 1) : 0;
+    return 0.5 + jitter + CIRCULAR_SHIFT;
 }
 
 V3 area_offset(const Light *light, const AreaFrame *frame, int i, int j, Rng *rng)
@@ -70,8 +78,8 @@ static Rgb grid_at(ShadowGrid *grid, int i, int j)
     if (eye->grid_marks[cell] != eye->grid_mark) {
         V3 offset = area_offset(grid->light, &grid->frame, i, j, &eye->rng);
         V3 to = v3_add(grid->to_center, offset);
-        eye->grid[cell] = trace_shadow(&eye->trace, &grid->s->at, v3_unit(to), v3_len(to),
-                                       grid->light_index, grid->blocks_targets);
+        eye->grid[cell] = trace_shadow_of(&eye->trace, &grid->bundle, &grid->s->at, v3_unit(to),
+                                          v3_len(to), grid->light_index, grid->blocks_targets);
         eye->grid_marks[cell] = eye->grid_mark;
     }
     return eye->grid[cell];
@@ -121,6 +129,11 @@ Rgb area_shadow(EyeThread *eye, const EyeLight *light, const SurfaceSample *s,
                        .light_index = light->index,
                        .blocks_targets =
                            light->makes_caustics && s->surface->photons.is_collecting};
+    double reach = v3_len(grid.frame.axis1) * grid_reach(area->size1, area->has_jitter) +
+                   v3_len(grid.frame.axis2) * grid_reach(area->size2, area->has_jitter);
+    trace_shadow_bundle(eye->trace.tracer, &s->at, grid.to_center, reach, &grid.bundle);
+    if (grid.bundle.count == 0)
+        return RGB_WHITE;
     eye->grid_mark++;
     return rect_mean(&grid, (GridRect){0, 0, area->size1 - 1, area->size2 - 1}, 0);
 }

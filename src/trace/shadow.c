@@ -105,13 +105,10 @@ static bool test_view(ShadowQuery *query, const ViewIndex *view, const Ray *ray,
 /* The view of a light holds for rays that aim at it to within its margin. */
 #define VIEW_NEAREST 1e10
 
+/* Look for a blocker among all objects. */
 static bool find_blocker(ShadowQuery *query, const Ray *ray, int light, double error)
 {
     const Tracer *tracer = query->tracer;
-    uint32_t last = light >= 0 ? query->thread->blockers[light] : NO_OBJECT;
-    if (last != NO_OBJECT && may_block(query, last) &&
-        !object_is_missed(&tracer->objects[last], ray) && test_object(query, last, ray))
-        return true;
     for (uint32_t i = 0; i < tracer->unbounded_count; i++) {
         uint32_t object = tracer->unbounded[i];
         const Shape *shape = tracer->objects[object].shape;
@@ -128,6 +125,28 @@ static bool find_blocker(ShadowQuery *query, const Ray *ray, int light, double e
         return is_blocked;
     Ray rest = *ray;
     return box_index_any(tracer->index, &rest, test_item, query);
+}
+
+/* Look for a blocker among the objects of a bundle. */
+static bool find_in_bundle(ShadowQuery *query, const Ray *ray, const ShadowBundle *bundle)
+{
+    for (int i = 0; i < bundle->count; i++) {
+        const TracedObject *object = &query->tracer->objects[bundle->object[i]];
+        if (object->shape->kind == SHAPE_PLANE ? plane_is_missed(object->shape, ray)
+                                               : object_is_missed(object, ray))
+            continue;
+        if (test_object(query, bundle->object[i], ray))
+            return true;
+    }
+    return false;
+}
+
+/* Try what blocked the last ray to this light. */
+static bool is_still_blocked(ShadowQuery *query, const Ray *ray, int light)
+{
+    uint32_t last = light >= 0 ? query->thread->blockers[light] : NO_OBJECT;
+    return last != NO_OBJECT && may_block(query, last) &&
+           !object_is_missed(&query->tracer->objects[last], ray) && test_object(query, last, ray);
 }
 
 static bool is_solid_texture(const Texture *texture)
@@ -232,8 +251,8 @@ static Rgb walk_filters(ShadowQuery *query, const Ray *ray)
  * rounding of the light's place, of the direction and of t. */
 #define LIGHT_SLACK 0x1p-48
 
-Rgb trace_shadow(TraceThread *thread, const ShapePoint *from, V3 to, double distance, int light,
-                 bool blocks_targets)
+Rgb trace_shadow_of(TraceThread *thread, const ShadowBundle *bundle, const ShapePoint *from, V3 to,
+                    double distance, int light, bool blocks_targets)
 {
     Ray ray = trace_ray_from(from, to);
     ray.tmax = distance - distance * LIGHT_SLACK - 8 * from->p_error;
@@ -248,7 +267,9 @@ Rgb trace_shadow(TraceThread *thread, const ShapePoint *from, V3 to, double dist
     query.count = 0;
     query.capacity = FILTERS_FEW;
     query.filters = query.few;
-    if (find_blocker(&query, &ray, light, from->p_error)) {
+    if (is_still_blocked(&query, &ray, light) ||
+        (bundle && bundle->count >= 0 ? find_in_bundle(&query, &ray, bundle)
+                                      : find_blocker(&query, &ray, light, from->p_error))) {
         if (light >= 0)
             thread->blockers[light] = query.blocker;
         return RGB_BLACK;
@@ -257,4 +278,10 @@ Rgb trace_shadow(TraceThread *thread, const ShapePoint *from, V3 to, double dist
         return RGB_WHITE;
     thread->stats.count[STAT_SHADOW_FILTER_WALKS]++;
     return walk_filters(&query, &ray);
+}
+
+Rgb trace_shadow(TraceThread *thread, const ShapePoint *from, V3 to, double distance, int light,
+                 bool blocks_targets)
+{
+    return trace_shadow_of(thread, NULL, from, to, distance, light, blocks_targets);
 }

@@ -139,6 +139,22 @@ void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit, const I
 Rgb trace_shadow(TraceThread *thread, const ShapePoint *from, V3 to, double distance, int light,
                  bool blocks_targets);
 
+/* The objects that shadow rays from one point to the points of one area light may meet. */
+enum { SHADOW_BUNDLE_MAX = 16 };
+typedef struct ShadowBundle {
+    int count; /* negative: more than fit, every ray asks for itself */
+    uint32_t object[SHADOW_BUNDLE_MAX];
+} ShadowBundle;
+
+/* Find the objects for rays from `from` to points within `radius` of from->p + to_center.  None
+ * means that all the rays arrive. */
+void trace_shadow_bundle(const Tracer *tracer, const ShapePoint *from, V3 to_center, double radius,
+                         ShadowBundle *out);
+
+/* trace_shadow for a ray of a bundle. */
+Rgb trace_shadow_of(TraceThread *thread, const ShadowBundle *bundle, const ShapePoint *from, V3 to,
+                    double distance, int light, bool blocks_targets);
+
 /* Light arriving at a point from one light source, before any shadow. */
 typedef struct LightSample {
     V3 to_light;     /* unit */

@@ -17,10 +17,10 @@ typedef enum ShadowKind {
 /* Per object, what queries ask for again and again. */
 typedef struct TracedObject {
     const Shape *shape;
-    V3 center; /* of a ball around it */
-    double radius2;
-    bool has_ball;  /* and the ball is worth a test */
-    uint8_t shadow; /* ShadowKind */
+    V3 center;              /* of a ball around it */
+    double radius, radius2; /* of the ball */
+    bool has_ball;          /* and the ball is worth a test */
+    uint8_t shadow;         /* ShadowKind */
     bool is_hidden[RAY_KIND_COUNT];
     bool is_closed; /* made of closed solids: normals tell entering from leaving */
 } TracedObject;

@@ -49,6 +49,23 @@ static void summarize(const Scene *scene, const Shape *shape, LeafSummary *sum)
     sum->may_transmit |= surface->may_transmit;
 }
 
+/* A little larger than it need be, for the rounding of tests against it. */
+static void set_ball(const Object *object, TracedObject *out)
+{
+    const Shape *shape = object->shape;
+    if (!bound_is_finite(object->bound) || bound_is_empty(object->bound))
+        return;
+    out->center = bound_center(object->bound);
+    out->radius = bound_radius(object->bound) * (1 + 1e-9);
+    out->has_ball = shape->kind != SHAPE_SPHERE;
+    if (shape->kind == SHAPE_SPHERE && !shape->is_transformed) {
+        /* Its box is that much larger. */
+        V3 size = v3_sub(object->bound.hi, object->bound.lo);
+        out->radius = 0.5 * fmax(size.x, fmax(size.y, size.z)) * (1 + 1e-9);
+    }
+    out->radius2 = out->radius * out->radius;
+}
+
 static void describe_object(Tracer *tracer, uint32_t i)
 {
     const Object *object = &tracer->scene->objects[i];
@@ -57,12 +74,7 @@ static void describe_object(Tracer *tracer, uint32_t i)
     summarize(tracer->scene, object->shape, &sum);
     out->shape = object->shape;
     out->is_closed = sum.is_closed;
-    out->has_ball = object->shape->kind != SHAPE_SPHERE && bound_is_finite(object->bound);
-    if (out->has_ball) {
-        double radius = bound_radius(object->bound);
-        out->center = bound_center(object->bound);
-        out->radius2 = radius * radius * (1 + 1e-9);
-    }
+    set_ball(object, out);
     out->is_hidden[RAY_CAMERA] = object->no_image;
     out->is_hidden[RAY_REFRACTED] = object->no_image;
     out->is_hidden[RAY_PHOTON] = object->no_image;

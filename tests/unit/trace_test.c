@@ -561,6 +561,55 @@ static void test_views_agree_with_the_index(void **state)
     }
 }
 
+/* A bundle leaves out no object that one of its rays meets. */
+static void test_bundles_agree_with_single_rays(void **state)
+{
+    (void)state;
+    World w;
+    world_init(&w);
+    Rng rng = rng_at(8, 0, 0);
+    const Texture *red = emitter(&w, 1, 0, 0);
+    const Texture *half = flat(&w, (Color5){1, 0.5f, 1, 0.5f, 0.25f}, &dull);
+    for (int i = 0; i < 14; i++) {
+        V3 u = v3(rng_double(&rng), rng_double(&rng), rng_double(&rng));
+        V3 c = v3(8 * u.x - 4, 3 * u.y, 8 * u.z - 4);
+        double size = 0.05 + 0.6 * rng_double(&rng);
+        Shape *shape = i % 3 ? shape_sphere(w.scene.arena, c, size)
+                             : box(&w, c, v3_add(c, v3(size, 3 * size, 0.5 * size)));
+        world_add(&w, shape, i % 4 ? red : half, &air);
+    }
+    world_add(&w, shape_plane(w.scene.arena, v3(0, 1, 0), 0), red, &air);
+    world_ready(&w);
+    V3 lamp = v3(1, 4, -2);
+    int empty = 0, rays = 0, shadows = 0;
+    for (int i = 0; i < 4000; i++) {
+        Ray ray = {v3(0.1, 2.5, -6), warp_sphere((V2){rng_double(&rng), rng_double(&rng)}), 0,
+                   INFINITY};
+        Hit hit;
+        if (!trace_closest(&w.thread, &ray, RAY_REFRACTED, &hit))
+            continue;
+        double radius = i % 2 ? 1.5 : 0.1;
+        V3 to_center = v3_sub(lamp, hit.point.p);
+        ShadowBundle bundle;
+        trace_shadow_bundle(w.tracer, &hit.point, to_center, radius, &bundle);
+        empty += bundle.count == 0;
+        for (int k = 0; k < 8; k++) {
+            V3 aside = warp_sphere((V2){rng_double(&rng), rng_double(&rng)});
+            V3 to = v3_mad(to_center, radius, aside);
+            double distance = v3_len(to);
+            to = v3_unit(to);
+            Rgb a = trace_shadow_of(&w.thread, &bundle, &hit.point, to, distance, -1, false);
+            Rgb b = trace_shadow(&w.thread, &hit.point, to, distance, -1, false);
+            assert_memory_equal(&a, &b, sizeof a);
+            rays++;
+            shadows += b.r < 1;
+        }
+    }
+    if (!(empty > 100 && shadows > 500 && shadows < rays))
+        fail_msg("%d empty bundles, %d of %d rays in shadow", empty, shadows, rays);
+    world_done(&w);
+}
+
 /* The ends of a cube of directions: axes, edges and corners. */
 static void test_views_at_edges(void **state)
 {
@@ -814,6 +863,7 @@ int main(void)
         cmocka_unit_test(test_coincident_objects),
         cmocka_unit_test(test_visibility_by_kind),
         cmocka_unit_test(test_views_agree_with_the_index),
+        cmocka_unit_test(test_bundles_agree_with_single_rays),
         cmocka_unit_test(test_views_at_edges),
         cmocka_unit_test(test_empty_scene),
         cmocka_unit_test(test_no_self_hits),
