@@ -11,7 +11,11 @@
 
 /* Cells in which the pilot found nothing are still tried, at this part of the density of the
  * best ones: a feature too small for the pilot is then bright grain, not missing light. */
-#define CELL_FLOOR (1.0 / 16)
+#define CELL_FLOOR (1.0 / 32)
+
+/* Cells beside one in which it found something count as this part of it: no more than a sliver
+ * of the target can reach into them. */
+#define NEIGHBOUR_PART 0.25f
 
 /* Direction at a point of the square, within a cone around +z whose rim is at 1 - cosine =
  * `rim`.  Uniform in solid angle: 1 - z is as the square of the radius on the disk. */
@@ -155,16 +159,20 @@ void beam_set_cells(Beam *beam, const float *found)
     float most = 0;
     for (int i = 0; i < cells; i++)
         most = fmaxf(most, found[i]);
-    double sum = 0;
-    for (int i = 0; i < cells; i++) {
-        float best = best_around(found, side, i % side, i / side);
-        double weight = most > 0 ? fmax(CELL_FLOOR, (double)(best / most)) : 1;
-        covered += best > 0;
-        sum += weight;
-        beam->cumulative[i] = sum;
-    }
-    for (int i = 0; i < cells; i++)
-        beam->cumulative[i] /= sum;
+    double sum = 0, total = 0;
+    for (int pass = 0; pass < 2; pass++)
+        for (int i = 0; i < cells; i++) {
+            float around = best_around(found, side, i % side, i / side);
+            float best = fmaxf(found[i], NEIGHBOUR_PART * around);
+            double weight = most > 0 ? fmax(CELL_FLOOR, (double)(best / most)) : 1;
+            if (pass == 0) {
+                covered += best > 0;
+                total += weight;
+            } else {
+                sum += weight;
+                beam->cumulative[i] = (float)(sum / total);
+            }
+        }
     beam->cumulative[cells - 1] = 1;
     beam->covered = (double)covered / cells;
 }
@@ -172,18 +180,15 @@ void beam_set_cells(Beam *beam, const float *found)
 V2 beam_warp(const Beam *beam, V2 uniform, double *density)
 {
     int side = beam->side, low = 0, high = side * side - 1;
-    *density = 1;
-    if (side == 0)
-        return uniform;
     while (low < high) {
         int middle = (low + high) / 2;
-        if (uniform.u < beam->cumulative[middle])
+        if (uniform.u < (double)beam->cumulative[middle])
             high = middle;
         else
             low = middle + 1;
     }
-    double begin = low > 0 ? beam->cumulative[low - 1] : 0;
-    double width = beam->cumulative[low] - begin;
+    double begin = low > 0 ? (double)beam->cumulative[low - 1] : 0;
+    double width = (double)beam->cumulative[low] - begin;
     double within = fmin((uniform.u - begin) / width, 1 - 0x1p-53);
     *density = width * side * side;
     return (V2){(low % side + within) / side, (low / side + uniform.v) / side};

@@ -6,8 +6,6 @@
 #include "math/sample.h"
 #include "trace/trace.h"
 
-enum { CELLS_SIDE_MAX = 32 };
-
 /* Rays are drawn from the unit square: onto the cone around a ball, or the disk across it.
  * The square is divided into cells, each with a density of its own. */
 typedef struct Beam {
@@ -17,8 +15,8 @@ typedef struct Beam {
     V3 center;            /* of a ball around the target, scene units */
     double radius;
     double spacing_factor; /* the target's */
-    int side;              /* cells a side; 0: all alike */
-    double *cumulative;    /* of the weights of cells, row by row; side * side, ends with 1 */
+    int side;              /* cells a side */
+    float *cumulative;     /* of the weights of cells, row by row; side * side, ends with 1 */
     double flux;           /* onto the target, summed RGB, estimated by a pilot */
     double covered;        /* part of the square whose cells were found to matter */
     uint64_t budget;       /* photons to send */
@@ -51,8 +49,8 @@ bool beam_can_shine(const Beam *beam);
  * the way been straight, over the area it then covers. */
 Rgb beam_flux(const Beam *beam, const BeamRay *ray, double length);
 
-/* Set the densities of the cells from what a pilot found in each (>= 0; side * side of them).
- * Cells count as much as the best around them, and none is left out. */
+/* Set the densities of beam->side squared cells from what a pilot found in each (>= 0), into
+ * beam->cumulative, which is there.  Cells beside good ones count too, and none is left out. */
 void beam_set_cells(Beam *beam, const float *found);
 
 #endif

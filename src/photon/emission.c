@@ -1,9 +1,8 @@
 /* Aiming beams and sharing photons.
  *
- * Each light has a beam for each target (for the global map, one for the whole scene).  A pilot
- * sends a few rays through every cell of a beam: cells that see the target get the photons, and
- * the flux found is what lights and targets share the budget by, so that photons are alike in
- * power and none is sent where it can do nothing.
+ * Each light has a beam for each target (for the global map, one for the whole scene).  The flux
+ * a pilot finds in them is what lights and targets share the budget by, so that photons are
+ * alike in power.
  * SPDX-License-Identifier: Apache-2.0 */
 #include "photon/emission_int.h"
 
@@ -105,14 +104,9 @@ static Status make_beams(Emission *emission)
 
 /* --- random numbers --------------------------------------------------------------------- */
 
-static uint64_t beam_number(const Emission *emission, const Beam *beam)
-{
-    return (uint64_t)(beam - emission->beams);
-}
-
 Rng emission_rng(const Emission *emission, const Beam *beam, uint64_t index)
 {
-    uint64_t item = (beam_number(emission, beam) << 40) + index;
+    uint64_t item = (emission_beam_number(emission, beam) << 40) + index;
     return rng_at(emission->options->seed, PASS_PHOTON + (uint32_t)emission->rules.map, item);
 }
 
@@ -120,7 +114,7 @@ bool emission_ray(const Emission *emission, const Beam *beam, uint64_t index, Be
                   double *first_choice)
 {
     Rng keys = rng_at(emission->options->seed ^ 0x5eed, (uint32_t)emission->rules.map,
-                      beam_number(emission, beam));
+                      emission_beam_number(emission, beam));
     uint64_t square_key = rng_u64(&keys), area_key = rng_u64(&keys), choice_key = rng_u64(&keys);
     uint32_t number = (uint32_t)index;
     double density;
@@ -132,89 +126,6 @@ bool emission_ray(const Emission *emission, const Beam *beam, uint64_t index, Be
     bool is_lit = beam_ray(beam, square, area, out);
     out->measure /= density * (double)beam->budget;
     return is_lit;
-}
-
-/* --- the pilot -------------------------------------------------------------------------- */
-
-/* How much a cell matters where a pilot ray found this flux: for caustics that it was found;
- * for indirect light flux, less what is far off (its part that comes back goes as the distance
- * squared; the best density is as the root of the product). */
-static float importance(const Emission *emission, Rgb flux, V3 at)
-{
-    if (emission->rules.map == MAP_CAUSTIC)
-        return rgb_is_black(flux) ? 0 : 1;
-    double far = v3_dist(at, emission->rules.center) / fmax(emission->rules.radius, 1e-300);
-    return rgb_sum(flux) / (float)fmax(1, far);
-}
-
-/* Send the rays of one cell; returns the flux they found, as if each stood for the square. */
-static double scout_cell(Emission *emission, TraceThread *thread, const Beam *beam, int side,
-                         int cell, float *found)
-{
-    double flux = 0;
-    for (int i = 0; i < CELL_RAYS_SIDE * CELL_RAYS_SIDE; i++) {
-        uint64_t item = (beam_number(emission, beam) << 40) + ((uint64_t)side << 24) +
-                        (uint64_t)(cell * CELL_RAYS_SIDE * CELL_RAYS_SIDE + i);
-        Rng rng = rng_at(emission->options->seed, PASS_PILOT + (uint32_t)emission->rules.map, item);
-        double u = (i % CELL_RAYS_SIDE + rng_double(&rng)) / CELL_RAYS_SIDE;
-        double v = (i / CELL_RAYS_SIDE + rng_double(&rng)) / CELL_RAYS_SIDE;
-        V2 square = {(cell % side + u) / side, (cell / side + v) / side};
-        V2 area = {rng_double(&rng), 0};
-        area.v = rng_double(&rng);
-        BeamRay ray;
-        V3 at;
-        if (!beam_ray(beam, square, area, &ray))
-            continue;
-        Rgb seen = photon_scout(thread, &emission->rules, beam, &ray, &rng, &at);
-        if (rgb_is_black(seen) || !rgb_is_finite(seen))
-            continue;
-        flux += (double)rgb_sum(seen);
-        *found = fmaxf(*found, importance(emission, seen, at));
-    }
-    return flux;
-}
-
-/* Try a beam with finer and finer cells until it is found to matter. */
-static void scout_beam(void *ctx, size_t index, int thread)
-{
-    Emission *emission = ctx;
-    Beam *beam = &emission->beams[index];
-    for (int side = beam->side; side <= CELLS_SIDE_MAX; side *= 2) {
-        float found[CELLS_SIDE_MAX * CELLS_SIDE_MAX] = {0};
-        double flux = 0;
-        for (int i = 0; i < side * side; i++)
-            flux += scout_cell(emission, &emission->threads[thread], beam, side, i, &found[i]);
-        beam->side = side;
-        beam->flux = flux / (side * side * CELL_RAYS_SIDE * CELL_RAYS_SIDE);
-        if (flux > 0) {
-            beam->cumulative = mem_array((size_t)side * (size_t)side, sizeof *beam->cumulative);
-            if (beam->cumulative)
-                beam_set_cells(beam, found);
-            return;
-        }
-    }
-    beam->flux = 0;
-}
-
-/* Cells a side for a beam's share of the pilot's rays. */
-static int pilot_side(double photons, int beams)
-{
-    double cells = photons / (PILOT_PART * CELL_RAYS_SIDE * CELL_RAYS_SIDE * (double)beams);
-    int side = CELLS_SIDE_MIN;
-    while (side < CELLS_SIDE_MAX && (double)(side * side * 4) <= cells)
-        side *= 2;
-    return side;
-}
-
-static Status run_pilot(Emission *emission, double photons)
-{
-    for (int i = 0; i < emission->beam_count; i++)
-        emission->beams[i].side = pilot_side(photons, emission->beam_count);
-    TRY(work_for(emission->thread_count, (size_t)emission->beam_count, scout_beam, emission));
-    for (int i = 0; i < emission->beam_count; i++)
-        if (emission->beams[i].flux > 0 && !emission->beams[i].cumulative)
-            return diag_no_memory(emission->diag, "photon beams");
-    return OK;
 }
 
 /* --- budgets ---------------------------------------------------------------------------- */
@@ -389,7 +300,7 @@ Status emission_init(Emission *emission, const Tracer *tracer, MapKind map,
     TRY(make_beams(emission));
     if (emission->beam_count == 0)
         return OK;
-    TRY(run_pilot(emission, photons_wanted(emission, false)));
+    TRY(emission_pilot(emission, photons_wanted(emission, false)));
     return share_lights(emission, (uint64_t)photons_wanted(emission, true));
 }
 

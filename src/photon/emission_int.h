@@ -26,6 +26,14 @@ Status emission_init(Emission *emission, const Tracer *tracer, MapKind map,
                      const PhotonOptions *options, Diag *diag);
 void emission_done(Emission *emission, Stats *add_to);
 
+/* Try every beam with a small part of `photons` rays: set its cells and its flux. */
+Status emission_pilot(Emission *emission, double photons);
+
+static inline uint64_t emission_beam_number(const Emission *emission, const Beam *beam)
+{
+    return (uint64_t)(beam - emission->beams);
+}
+
 /* Draw ray `index` of a beam.  Returns false where the light does not shine. */
 bool emission_ray(const Emission *emission, const Beam *beam, uint64_t index, BeamRay *out,
                   double *first_choice);

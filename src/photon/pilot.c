@@ -1,0 +1,205 @@
+/* The pilot: which parts of a beam matter, and how much light it brings.
+ *
+ * A few rays go through every cell of a beam.  Cells that lie whole inside the target's outline,
+ * or whole outside, are settled; those along it are split in four and tried again, as long as
+ * the pilot's share of the photons lasts.  The photons then go to the cells that see the target.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "photon/emission_int.h"
+
+#include "base/mem.h"
+#include "base/work.h"
+
+enum {
+    CELL_RAYS_SIDE = 2, /* pilot rays a cell, each way */
+    CELL_RAYS = CELL_RAYS_SIDE * CELL_RAYS_SIDE,
+    SIDE_MIN = 2,
+    SIDE_FIRST_MAX = 16,  /* cells a side of the first round */
+    SIDE_SEARCH_MAX = 32, /* a beam in which nothing is found is tried up to this */
+    SIDE_MAX = 128,
+    PILOT_PART = 8,    /* the pilot sends about this part of the photons */
+    PASS_PILOT = 0x710 /* random numbers, by map */
+};
+
+typedef enum CellState { CELL_OPEN, CELL_SETTLED } CellState;
+
+typedef struct Cell {
+    float flux;       /* that the cell would bring if it were the whole beam, summed RGB */
+    float importance; /* how dense photons should be */
+    uint8_t hits;     /* of CELL_RAYS */
+    uint8_t state;
+} Cell;
+
+typedef struct Grid {
+    int side;
+    Cell *cells;
+} Grid;
+
+/* How much a cell matters where a pilot ray found this flux: for caustics that it was found;
+ * for indirect light flux, less what is far off (its part that comes back goes as the distance
+ * squared; the best density is as the root of the product). */
+static float importance(const Emission *emission, Rgb flux, V3 at)
+{
+    if (emission->rules.map == MAP_CAUSTIC)
+        return 1;
+    double far = v3_dist(at, emission->rules.center) / fmax(emission->rules.radius, 1e-300);
+    return rgb_sum(flux) / (float)fmax(1, far);
+}
+
+/* Send ray `i` through a cell; returns the flux it finds. */
+static Rgb scout_ray(const Emission *emission, TraceThread *thread, const Beam *beam, int side,
+                     int cell, int i, V3 *at)
+{
+    uint64_t item = (emission_beam_number(emission, beam) << 40) + ((uint64_t)side << 24) +
+                    (uint64_t)(cell * CELL_RAYS + i);
+    Rng rng = rng_at(emission->options->seed, PASS_PILOT + (uint32_t)emission->rules.map, item);
+    double u = (i % CELL_RAYS_SIDE + rng_double(&rng)) / CELL_RAYS_SIDE;
+    double v = (i / CELL_RAYS_SIDE + rng_double(&rng)) / CELL_RAYS_SIDE;
+    V2 square = {(cell % side + u) / side, (cell / side + v) / side};
+    V2 area = {rng_double(&rng), 0};
+    area.v = rng_double(&rng);
+    BeamRay ray;
+    if (!beam_ray(beam, square, area, &ray))
+        return RGB_BLACK;
+    Rgb found = photon_scout(thread, &emission->rules, beam, &ray, &rng, at);
+    return rgb_is_finite(found) ? found : RGB_BLACK;
+}
+
+static Cell scout_cell(const Emission *emission, TraceThread *thread, const Beam *beam, int side,
+                       int number)
+{
+    Cell cell = {0};
+    for (int i = 0; i < CELL_RAYS; i++) {
+        V3 at = {0};
+        Rgb found = scout_ray(emission, thread, beam, side, number, i, &at);
+        if (rgb_is_black(found))
+            continue;
+        cell.flux += rgb_sum(found) / CELL_RAYS;
+        cell.importance = fmaxf(cell.importance, importance(emission, found, at));
+        cell.hits++;
+    }
+    return cell;
+}
+
+/* Settle cells that look like all around them; returns how many are left open. */
+static int settle_cells(Grid *grid)
+{
+    int side = grid->side, open = 0;
+    for (int c = 0; c < side * side; c++) {
+        uint8_t hits = grid->cells[c].hits;
+        bool is_settled = hits == 0 || hits == CELL_RAYS;
+        for (int y = c / side - 1; y <= c / side + 1; y++)
+            for (int x = c % side - 1; x <= c % side + 1; x++)
+                if (x >= 0 && y >= 0 && x < side && y < side)
+                    is_settled &= grid->cells[y * side + x].hits == hits;
+        grid->cells[c].state = is_settled ? CELL_SETTLED : CELL_OPEN;
+        open += !is_settled;
+    }
+    return open;
+}
+
+static bool grid_split(Grid *grid)
+{
+    int side = grid->side * 2;
+    Cell *cells = mem_array((size_t)side * (size_t)side, sizeof *cells);
+    if (!cells)
+        return false;
+    for (int c = 0; c < side * side; c++)
+        cells[c] = grid->cells[c / side / 2 * grid->side + c % side / 2];
+    mem_free(grid->cells);
+    *grid = (Grid){side, cells};
+    return true;
+}
+
+/* Try the open cells; returns whether anything was found at all. */
+static bool scout_grid(const Emission *emission, TraceThread *thread, const Beam *beam,
+                       const Grid *grid)
+{
+    bool has_hits = false;
+    for (int c = 0; c < grid->side * grid->side; c++) {
+        if (grid->cells[c].state == CELL_OPEN)
+            grid->cells[c] = scout_cell(emission, thread, beam, grid->side, c);
+        has_hits |= grid->cells[c].hits > 0;
+    }
+    return has_hits;
+}
+
+/* Try and split until the outline is fine enough; returns false when memory is out. */
+static bool refine_grid(const Emission *emission, TraceThread *thread, const Beam *beam,
+                        double rays, Grid *grid)
+{
+    for (;;) {
+        bool has_hits = scout_grid(emission, thread, beam, grid);
+        int open = settle_cells(grid), next = grid->side * 2;
+        if (!has_hits) { /* something small may be there all the same */
+            if (next > SIDE_SEARCH_MAX)
+                return true;
+            for (int c = 0; c < grid->side * grid->side; c++)
+                grid->cells[c].state = CELL_OPEN;
+        } else {
+            rays -= (double)open * 4 * CELL_RAYS;
+            if (open == 0 || next > SIDE_MAX || rays < 0)
+                return true;
+        }
+        if (!grid_split(grid))
+            return false;
+    }
+}
+
+/* Hand what was found to the beam; returns false when memory is out. */
+static bool take_cells(Beam *beam, const Grid *grid)
+{
+    size_t count = (size_t)grid->side * (size_t)grid->side;
+    double flux = 0;
+    for (size_t c = 0; c < count; c++)
+        flux += (double)grid->cells[c].flux;
+    beam->flux = flux / (double)count;
+    beam->side = grid->side;
+    if (!(flux > 0))
+        return true;
+    float *found = mem_array(count, sizeof *found);
+    beam->cumulative = mem_array(count, sizeof *beam->cumulative);
+    if (found && beam->cumulative) {
+        for (size_t c = 0; c < count; c++)
+            found[c] = grid->cells[c].importance;
+        beam_set_cells(beam, found);
+    }
+    mem_free(found);
+    return found && beam->cumulative;
+}
+
+typedef struct Pilot {
+    Emission *emission;
+    double rays;    /* for a beam */
+    bool *is_short; /* per beam: memory ran out */
+} Pilot;
+
+static void pilot_beam(void *ctx, size_t index, int thread)
+{
+    Pilot *pilot = ctx;
+    Emission *emission = pilot->emission;
+    Beam *beam = &emission->beams[index];
+    int side = SIDE_MIN;
+    while (side < SIDE_FIRST_MAX && (double)(side * side * 4 * CELL_RAYS) <= pilot->rays)
+        side *= 2;
+    Grid grid = {side, mem_array((size_t)(side * side), sizeof(Cell))};
+    double rest = pilot->rays - side * side * CELL_RAYS;
+    pilot->is_short[index] =
+        !grid.cells || !refine_grid(emission, &emission->threads[thread], beam, rest, &grid) ||
+        !take_cells(beam, &grid);
+    mem_free(grid.cells);
+}
+
+Status emission_pilot(Emission *emission, double photons)
+{
+    size_t count = (size_t)emission->beam_count;
+    Pilot pilot = {emission, photons / PILOT_PART / (double)count,
+                   mem_array(count, sizeof *pilot.is_short)};
+    if (!pilot.is_short)
+        return diag_no_memory(emission->diag, "photon beams");
+    Status status = work_for(emission->thread_count, count, pilot_beam, &pilot);
+    for (size_t i = 0; i < count && status == OK; i++)
+        if (pilot.is_short[i])
+            status = diag_no_memory(emission->diag, "photon beams");
+    mem_free(pilot.is_short);
+    return status;
+}
