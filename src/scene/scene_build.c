@@ -335,7 +335,7 @@ static void add_object(Finisher *f, const Node *node, const Looks *parent)
     uint32_t number = scene->object_count++;
     if (f->is_counting)
         return;
-    shape_finish(shape);
+    shape_finish(scene->arena, shape);
     Bound bound = shape_bound(shape);
     if (bound_is_empty(bound)) { /* as an intersection of things apart: nothing to see */
         scene->surface_count = first_surface;

@@ -11,6 +11,8 @@
 
 #include "base/mem.h"
 
+#include <string.h>
+
 typedef enum Rule { RULE_UNION, RULE_MERGE, RULE_INTERSECTION } Rule;
 
 /* A sweep over the merged lists of the children of one node. */
@@ -203,18 +205,70 @@ static bool is_closed_list(const ShapeScratch *scratch, int from)
     return scratch->items[from].change > 0 && scratch->items[scratch->count - 1].change < 0;
 }
 
+/* The parts of a line within the reaches of four children; near > far where it misses one. */
+typedef struct BlockCut {
+    double near[BLOCK], far[BLOCK];
+} BlockCut;
+
+typedef double Lanes __attribute__((vector_size(8 * BLOCK)));
+typedef int64_t LaneMask __attribute__((vector_size(8 * BLOCK)));
+#define LANES_PICK(mask, a, b) ((Lanes)(((mask) & (LaneMask)(a)) | (~(mask) & (LaneMask)(b))))
+
+/* As line_cut, for four boxes at once. */
+static void block_cut(const ReachBlock *b, const Line *line, BlockCut *out)
+{
+    const double o[3] = {line->ray->o.x, line->ray->o.y, line->ray->o.z};
+    const double inverse[3] = {line->inverse.x, line->inverse.y, line->inverse.z};
+    const Lanes zero = {0};
+    Lanes near = zero + line->near, far = zero + line->far;
+    for (int axis = 0; axis < 3; axis++) {
+        bool is_back = inverse[axis] < 0;
+        Lanes first, last;
+        memcpy(&first, is_back ? b->hi[axis] : b->lo[axis], sizeof first);
+        memcpy(&last, is_back ? b->lo[axis] : b->hi[axis], sizeof last);
+        first = (first - o[axis]) * inverse[axis];
+        last = (last - o[axis]) * inverse[axis];
+        near = LANES_PICK(first > near, first, near);
+        far = LANES_PICK(last < far, last, far);
+    }
+    /* The t are exact to a few of their own ulps. */
+    const double slack = 8 * EPS_DOUBLE;
+    near *= LANES_PICK(near < zero, zero + (1 + slack), zero + (1 - slack));
+    far *= LANES_PICK(far < zero, zero + (1 - slack), zero + (1 + slack));
+    memcpy(out->near, &near, sizeof near);
+    memcpy(out->far, &far, sizeof far);
+}
+
+static bool list_reached(const Shape *shape, const Line *line, ShapeScratch *scratch);
+
+/* List child i of a node; *cut is that of its block.  Returns its state before the line. */
+static bool list_child(const Shape *node, int i, const Line *line, BlockCut *cut,
+                       ShapeScratch *scratch)
+{
+    if (!node->is_finished || !node->reaches)
+        return csg_list(node->children[i], line, scratch);
+    const ReachBlock *block = &node->reaches[i / BLOCK];
+    int k = i % BLOCK;
+    if (k == 0)
+        block_cut(block, line, cut);
+    if (cut->near[k] > cut->far[k])
+        return block->is_inside_beyond[k];
+    Line part = {line->ray, line->inverse, cut->near[k], cut->far[k]};
+    return list_reached(node->children[i], &part, scratch);
+}
+
 /* List the children of a node; returns false if the line never enters an intersection. */
 static bool list_children(const Shape *node, Line line, ShapeScratch *scratch, long first, Sweep *s)
 {
+    BlockCut cut;
     for (int i = 0; i < node->child_count; i++) {
         int from = scratch->count;
-        bool inside = csg_list(node->children[i], &line, scratch);
+        bool inside = list_child(node, i, &line, &cut, scratch);
         scratch->states[first + i] = inside;
         s->inside_count += inside;
         if (scratch->count > from) {
             s->lister = s->lister == NO_CHILD ? i : MANY_CHILDREN;
-            for (int k = from; k < scratch->count; k++)
-                scratch->items[k].child = (uint32_t)i;
+            tag(scratch, from, (uint32_t)i);
         }
         if (s->rule != RULE_INTERSECTION || inside)
             continue;
@@ -281,20 +335,26 @@ static bool clip_list(const Shape *shape, const Line *line, ShapeScratch *scratc
     return inside_before;
 }
 
-bool csg_list(const Shape *shape, const Line *line, ShapeScratch *scratch)
+/* csg_list for a line that is known to reach the shape. */
+static bool list_reached(const Shape *shape, const Line *line, ShapeScratch *scratch)
 {
-    Line part = *line;
-    if (shape->is_finished && !line_cut(&part, &shape->reach))
-        return shape->is_inside_beyond;
     int base = scratch->count;
     bool is_inside = shape->kind < SHAPE_UNION ? leaf_list(shape, line->ray, scratch)
-                                               : node_list(shape, &part, scratch);
+                                               : node_list(shape, line, scratch);
     if (shape->is_inverted) {
         is_inside = !is_inside;
         for (int i = base; i < scratch->count; i++)
             crossing_invert(&scratch->items[i]);
     }
     if (shape->clip_count)
-        is_inside = clip_list(shape, &part, scratch, base, is_inside);
+        is_inside = clip_list(shape, line, scratch, base, is_inside);
     return is_inside;
+}
+
+bool csg_list(const Shape *shape, const Line *line, ShapeScratch *scratch)
+{
+    Line part = *line;
+    if (shape->is_finished && !line_cut(&part, &shape->reach))
+        return shape->is_inside_beyond;
+    return list_reached(shape, &part, scratch);
 }

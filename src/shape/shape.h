@@ -32,6 +32,7 @@ typedef enum ShapeKind {
 
 typedef struct Shape Shape;
 typedef struct MeshData MeshData;
+typedef struct ReachBlock ReachBlock;
 
 /* Forms in object space; Shape.xform takes them to the world.  Spheres, boxes, planes and
  * triangles fold simple transforms into their numbers, so that most have none. */
@@ -103,6 +104,7 @@ struct Shape {
     bool is_finished;      /* the two below are set: shape_finish */
     bool is_inside_beyond; /* what lies outside `reach` is inside the solid */
     Bound reach;           /* around every crossing, visible or not */
+    const ReachBlock *reaches; /* of the children, packed; NULL: not made */
 };
 
 /* One crossing of a line and a surface. */
@@ -165,8 +167,8 @@ void shape_invert(Shape *shape);
 
 /* Derive what speeds up the questions below (bounds of CSG children), once the shape, its
  * children and clips are complete.  Changing any of them afterwards needs another call on
- * the root.  Without it answers are the same, only slower. */
-void shape_finish(Shape *shape);
+ * the root.  Without it, or when memory is out, answers are the same, only slower. */
+void shape_finish(Arena *arena, Shape *shape);
 
 /* --- asking (any thread) ---------------------------------------------------------------- */
 

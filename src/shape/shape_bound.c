@@ -134,9 +134,8 @@ bool line_cut(Line *line, const Bound *box)
     CUT(x);
     CUT(y);
     CUT(z);
-    /* The t are exact to a few of their own ulps. */
-    near -= 8 * EPS_DOUBLE * fabs(near);
-    far += 8 * EPS_DOUBLE * fabs(far);
+    near = earlier(near);
+    far = -earlier(-far);
     if (near > far)
         return false;
     line->near = near;

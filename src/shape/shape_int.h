@@ -137,8 +137,21 @@ typedef struct Line {
     double near, far;
 } Line;
 
+/* Move a t that is exact to a few of its own ulps to where it is early for sure. */
+static inline double earlier(double t)
+{
+    return t * (t < 0 ? 1 + 8 * EPS_DOUBLE : 1 - 8 * EPS_DOUBLE);
+}
+
 /* Narrow a line to a box; false when it misses it.  Never says no by rounding. */
 bool line_cut(Line *line, const Bound *box);
+
+/* The reaches of four children, side by side so that they are cut together. */
+enum { BLOCK = 4 };
+struct ReachBlock {
+    double lo[3][BLOCK], hi[3][BLOCK];
+    bool is_inside_beyond[BLOCK];
+};
 
 /* Return the box that holds every crossing of a shape; *is_inside_beyond: the state of what
  * lies outside it. */

@@ -252,12 +252,33 @@ void shape_invert(Shape *shape)
     shape->is_finished = false;
 }
 
-void shape_finish(Shape *shape)
+/* Pack the reaches of a node's children; returns NULL when there are none or memory is out. */
+static const ReachBlock *pack_reaches(Arena *arena, const Shape *node)
+{
+    if (node->child_count == 0)
+        return NULL;
+    int blocks = (node->child_count + BLOCK - 1) / BLOCK;
+    ReachBlock *out = ARENA_ARRAY(arena, ReachBlock, (size_t)blocks);
+    for (int i = 0; out && i < blocks * BLOCK; i++) {
+        ReachBlock *block = &out[i / BLOCK];
+        Bound reach = i < node->child_count ? node->children[i]->reach : BOUND_EMPTY;
+        for (int axis = 0; axis < 3; axis++) {
+            block->lo[axis][i % BLOCK] = v3_at(reach.lo, axis);
+            block->hi[axis][i % BLOCK] = v3_at(reach.hi, axis);
+        }
+        if (i < node->child_count)
+            block->is_inside_beyond[i % BLOCK] = node->children[i]->is_inside_beyond;
+    }
+    return out;
+}
+
+void shape_finish(Arena *arena, Shape *shape)
 {
     for (int i = 0; i < shape->child_count; i++)
-        shape_finish(shape->children[i]);
+        shape_finish(arena, shape->children[i]);
     for (int i = 0; i < shape->clip_count; i++)
-        shape_finish(shape->clips[i]);
+        shape_finish(arena, shape->clips[i]);
     shape->reach = shape_reach(shape, &shape->is_inside_beyond);
+    shape->reaches = pack_reaches(arena, shape);
     shape->is_finished = true;
 }

@@ -261,7 +261,7 @@ static Shape *scene_shape(int which, double s)
         children[2] = scene_shape(2, s);
         shape_invert(children[2]);
         Shape *csg = shape_csg(arena, SHAPE_INTERSECTION, children, 3);
-        shape_finish(csg);
+        shape_finish(arena, csg);
         return csg;
     }
     }

@@ -98,7 +98,7 @@ static void check_x(const Shape *shape, int count, const double *x, const int *c
             seen++;
         }
         assert_int_equal(seen, count);
-        shape_finish((Shape *)shape);
+        shape_finish(arena, (Shape *)shape);
     }
 }
 
@@ -272,7 +272,7 @@ static void test_many_children(void **state)
         children[i + 1] = inverse(ball(i + 0.5, 0.25));
     Shape *d = shape_csg(arena, SHAPE_INTERSECTION, children, HOLES + 1);
     assert_int_equal(list_x(d).count, 2 + 2 * HOLES);
-    shape_finish(d);
+    shape_finish(arena, d);
     assert_int_equal(list_x(d).count, 2 + 2 * HOLES);
     Ray ray = {{7.5, 5, 0}, {0, -1, 0}, 0, INFINITY};
     CrossList list;
@@ -392,7 +392,7 @@ static void test_random_trees(void **state)
     for (uint32_t i = 0; i < 3000; i++) {
         Rng rng = rng_at(33, 1, i);
         Shape *plain = random_tree(&rng, 3), *fast = shape_copy(arena, plain);
-        shape_finish(fast);
+        shape_finish(arena, fast);
         Bound box = shape_bound(fast);
         for (int k = 0; k < 20; k++) {
             V2 u = {rng_double(&rng), rng_double(&rng)}, w = {rng_double(&rng), rng_double(&rng)};

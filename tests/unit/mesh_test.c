@@ -169,7 +169,7 @@ static void test_csg(void **state)
     Shape *children[2] = {shape_mesh(arena, mesh), shape_sphere(arena, v3(0, 0, 0), 0.5)};
     shape_invert(children[1]);
     Shape *d = shape_csg(arena, SHAPE_INTERSECTION, children, 2);
-    shape_finish(d);
+    shape_finish(arena, d);
     Ray ray = {{0, 0, -5}, {0, 0, 1}, 0, INFINITY};
     CrossList list;
     shape_crossings(d, &ray, scratch, &list);
