@@ -62,7 +62,7 @@ static void test_object(ClosestQuery *query, uint32_t object, Ray *ray)
         !shape_closest(traced->shape, ray, query->thread->shapes, &crossing))
         return;
     double t = crossing.t;
-    double error = fmin(crossing.t_error, t * TIE_CAP);
+    double error = crossing.t_error < t * TIE_CAP ? crossing.t_error : t * TIE_CAP;
     if (query->count == 0 || t + error < query->t - query->error) {
         query->count = 0;
         query->t = t;
@@ -76,7 +76,9 @@ static void test_object(ClosestQuery *query, uint32_t object, Ray *ray)
     }
     insert(query, &crossing, error, object);
     /* Far enough to see a hit at the same t whose error is no larger, and the same t again. */
-    ray->tmax = fmin(ray->tmax, nextafter(query->t + 2 * query->error, INFINITY));
+    double end = query->t * (1 + 0x1p-51) + 2 * query->error;
+    if (end < ray->tmax)
+        ray->tmax = end;
 }
 
 static bool test_item(void *ctx, uint32_t item, Ray *ray)

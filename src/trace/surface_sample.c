@@ -152,7 +152,8 @@ static bool set_normals(Sampling *s, const ShapePoint *point)
 {
     bool is_inside = v3_dot(point->ng, s->ray->d) > 0;
     s->n = shading_normal(point->ns, is_inside ? v3_neg(point->ng) : point->ng, s->out->wo);
-    s->cosine = fmin(1, fmax(0, v3_dot(s->n, s->out->wo)));
+    double cosine = v3_dot(s->n, s->out->wo);
+    s->cosine = cosine > 1 ? 1 : cosine > 0 ? cosine : 0;
     s->has_mirror = false;
     return is_inside;
 }
@@ -234,7 +235,13 @@ void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit, const I
                     SurfaceSample *out)
 {
     const Tracer *tracer = thread->tracer;
-    Sampling s = {.tracer = tracer, .ray = ray, .hit = hit, .interiors = interiors, .out = out};
+    Sampling s;
+    s.tracer = tracer;
+    s.ray = ray;
+    s.hit = hit;
+    s.interiors = interiors;
+    s.out = out;
+    s.has_step = false;
     out->at = hit->point;
     out->wo = v3_neg(ray->d);
     bool is_inside = set_normals(&s, &hit->point);
