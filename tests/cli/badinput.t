@@ -10,7 +10,7 @@ bad() {
     fails 2 "$2" "$1" timeout 20 "$PMS" check "$T/$1.pms"
 }
 
-bad truncated "truncated.pms:[0-9]+:[0-9]+: error: .*end of the file" 'sphere { <0,0,0>, 1'
+bad truncated "truncated.pms:[0-9]+:[0-9]+: error: the file ends" 'sphere { <0,0,0>, 1'
 bad truncated-string "error: .*string" 'global_settings { assumed_gamma 1 } #declare S = "abc'
 bad truncated-comment "error: .*comment" 'sphere { 0, 1 } /* what'
 bad truncated-if "error: .*#end" '#if (1) sphere { 0, 1 }'
