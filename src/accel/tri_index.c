@@ -1,7 +1,6 @@
 /* An index over triangles: Embree finds the boxes of the triangles, the test is ours.
  *
- * The test shears space so that the ray becomes the z axis (after Woop, Benthin and Wald,
- * Watertight Ray/Triangle Intersection, JCGT 2(1), 2013) and asks on which side of each edge
+ * The test shears space so that the ray becomes the z axis and asks on which side of each edge
  * the ray passes.  The sign of an edge function is exact for the sheared points, the same for
  * both triangles at an edge, and an exact zero is decided as if the ray were moved by an
  * infinitesimal step; so a line meets exactly one of the triangles around an edge or a corner

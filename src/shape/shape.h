@@ -111,7 +111,8 @@ struct Shape {
 typedef struct Crossing {
     double t;          /* scene units */
     double t_error;    /* bound on the absolute error of t, scene units; the last few bits of
-                          the shape's own numbers count as error too */
+                          the shape's own numbers count as error too.  Two crossings whose
+                          bounds overlap may be a touching, or a near miss. */
     const Shape *leaf; /* the primitive crossed */
     uint32_t part;     /* which side, cap or triangle of the leaf */
     uint32_t child;    /* used while lists are merged */
