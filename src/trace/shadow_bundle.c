@@ -1,54 +1,160 @@
 /* Bundles of shadow rays: from one point to the points of one area light.
  *
- * All the rays lie in a cone around the way to the light's middle, cut off behind the light.
- * What is wholly outside a plane that touches the cone cannot meet any of them; most points see
- * nothing between them and the light, and then not one ray need be traced.
- * SPDX-License-Identifier: Apache-2.0 */
+ * What is missed by the hull of the point and the light cannot meet any of the rays; most points
+ * see nothing between them and the light, and then not one ray need be traced.  Objects near
+ * each other are looked at together first.  SPDX-License-Identifier: Apache-2.0 */
 #include "trace/trace_int.h"
 
-/* With more objects than this the rays are cheaper than looking at all objects. */
-enum { BUNDLE_OBJECTS_MAX = 512 };
+#include "base/mem.h"
+#include "trace/hull.h"
 
-/* Widens the cone by more than the rounding of the tests. */
+#include <stdlib.h>
+
+/* Objects looked at together; and with more such groups than this the ray index is cheaper. */
+enum { GROUP_OBJECTS = 8, GROUPS_MAX = 512 };
+
+/* Widens the light by more than the rounding of the places of its points. */
 #define WIDER (1 + 1e-9)
 
-typedef struct Cone {
-    V3 apex, axis; /* axis unit */
-    double sine, cosine;
-    double length; /* along the axis, to behind the light */
-    double slack;  /* scene units: rounding of the apex */
-    V3 light;      /* the light's middle */
-    double radius; /* of the light */
-} Cone;
+/* Objects near each other and a ball around them all. */
+typedef struct Group {
+    V3 center;
+    double radius;
+    uint32_t first, count; /* in BundleIndex.objects */
+} Group;
 
-/* Is the ball behind a plane that touches the cone on its side, or one that ends it? */
-static bool ball_is_outside(const Cone *cone, const TracedObject *object)
+struct BundleIndex {
+    Group *groups;
+    uint32_t group_count;
+    uint32_t *objects;
+};
+
+/* --- grouping ------------------------------------------------------------------------------- */
+
+typedef struct Placed {
+    double key;
+    uint32_t object;
+} Placed;
+
+static int by_key(const void *a, const void *b)
 {
-    V3 to = v3_sub(object->center, cone->apex);
-    double along = v3_dot(to, cone->axis), limit = object->radius + cone->slack;
-    if (along < -limit || along > cone->length + limit)
-        return true;
-    double far2 = v3_len2(to), aside2 = far2 - along * along;
-    double side = limit + along * cone->sine; /* against aside * cosine */
-    return side < 0 || aside2 * cone->cosine * cone->cosine > side * side + far2 * 1e-14;
+    const Placed *x = a, *y = b;
+    if (x->key != y->key)
+        return x->key < y->key ? -1 : 1;
+    return x->object < y->object ? -1 : x->object > y->object;
 }
 
-/* Are the apex and the whole light on one side of the plane? */
-static bool plane_is_outside(const Cone *cone, const Shape *plane)
+static void add_group(BundleIndex *index, const TracedObject *objects, const Placed *items,
+                      uint32_t first, uint32_t count)
 {
-    V3 n = plane->u.plane.normal;
-    double apex = v3_dot(n, cone->apex) - plane->u.plane.distance;
-    double light = v3_dot(n, cone->light) - plane->u.plane.distance;
-    return (apex > 0 && light > cone->radius) || (apex < 0 && light < -cone->radius);
+    Bound box = BOUND_EMPTY;
+    for (uint32_t i = 0; i < count; i++)
+        box = bound_add(box, objects[items[i].object].center);
+    Group *group = &index->groups[index->group_count++];
+    *group = (Group){.center = bound_center(box), .first = first, .count = count};
+    for (uint32_t i = 0; i < count; i++) {
+        const TracedObject *object = &objects[items[i].object];
+        double reach = v3_dist(group->center, object->center) + object->radius;
+        group->radius = fmax(group->radius, reach * WIDER);
+        index->objects[first + i] = items[i].object;
+    }
 }
 
-static bool is_outside(const Cone *cone, const TracedObject *object)
+/* Halve along the longest side of the box of centres until the halves are small. */
+static void split(BundleIndex *index, const TracedObject *objects, Placed *items, uint32_t first,
+                  uint32_t count)
 {
-    if (object->shadow == SHADOW_NONE)
+    if (count <= GROUP_OBJECTS) {
+        if (count > 0)
+            add_group(index, objects, items, first, count);
+        return;
+    }
+    Bound box = BOUND_EMPTY;
+    for (uint32_t i = 0; i < count; i++)
+        box = bound_add(box, objects[items[i].object].center);
+    V3 size = v3_sub(box.hi, box.lo);
+    int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    for (uint32_t i = 0; i < count; i++)
+        items[i].key = v3_at(objects[items[i].object].center, axis);
+    qsort(items, count, sizeof *items, by_key);
+    uint32_t half = count / 2;
+    split(index, objects, items, first, half);
+    split(index, objects, items + half, first + half, count - half);
+}
+
+BundleIndex *bundle_index_new(const TracedObject *objects, uint32_t object_count)
+{
+    BundleIndex *index = mem_alloc(sizeof *index);
+    Placed *items = mem_array((size_t)object_count + 1, sizeof *items);
+    if (index) {
+        index->groups = mem_array((size_t)object_count + 1, sizeof *index->groups);
+        index->objects = mem_array((size_t)object_count + 1, sizeof *index->objects);
+    }
+    if (!index || !items || !index->groups || !index->objects) {
+        mem_free(items);
+        bundle_index_free(index);
+        return NULL;
+    }
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < object_count; i++)
+        if (objects[i].shadow != SHADOW_NONE && objects[i].has_ball)
+            items[count++].object = i;
+    split(index, objects, items, 0, count);
+    mem_free(items);
+    return index;
+}
+
+void bundle_index_free(BundleIndex *index)
+{
+    if (!index)
+        return;
+    mem_free(index->groups);
+    mem_free(index->objects);
+    mem_free(index);
+}
+
+/* --- asking --------------------------------------------------------------------------------- */
+
+/* Returns false when the bundle is full. */
+static bool note(const TracedObject *objects, uint32_t object, const Hull *hull, ShadowBundle *out)
+{
+    if (hull_misses_shape(hull, objects[object].shape))
         return true;
-    if (object->shape->kind == SHAPE_PLANE)
-        return plane_is_outside(cone, object->shape);
-    return object->radius > 0 && ball_is_outside(cone, object);
+    if (out->count == SHADOW_BUNDLE_MAX)
+        return false;
+    out->object[out->count++] = object;
+    return true;
+}
+
+static bool note_group(const Tracer *tracer, const Group *group, const Hull *hull,
+                       ShadowBundle *out)
+{
+    for (uint32_t i = 0; i < group->count; i++) {
+        uint32_t number = tracer->bundles->objects[group->first + i];
+        const TracedObject *object = &tracer->objects[number];
+        if (!hull_misses_ball(hull, object->center, object->radius) &&
+            !note(tracer->objects, number, hull, out))
+            return false;
+    }
+    return true;
+}
+
+static bool note_all(const Tracer *tracer, const Hull *hull, ShadowBundle *out)
+{
+    const BundleIndex *index = tracer->bundles;
+    for (uint32_t i = 0; i < tracer->unbounded_count; i++) {
+        uint32_t number = tracer->unbounded[i];
+        if (tracer->objects[number].shadow != SHADOW_NONE &&
+            !note(tracer->objects, number, hull, out))
+            return false;
+    }
+    for (uint32_t i = 0; i < index->group_count; i++) {
+        const Group *group = &index->groups[i];
+        if (!hull_misses_ball(hull, group->center, group->radius) &&
+            !note_group(tracer, group, hull, out))
+            return false;
+    }
+    return true;
 }
 
 void trace_shadow_bundle(const Tracer *tracer, const ShapePoint *from, V3 to_center, double radius,
@@ -57,24 +163,17 @@ void trace_shadow_bundle(const Tracer *tracer, const ShapePoint *from, V3 to_cen
     double distance = v3_len(to_center);
     out->count = -1;
     radius = radius * WIDER + 1e-9 * distance;
-    if (!(radius < distance) || tracer->scene->object_count > BUNDLE_OBJECTS_MAX)
+    if (!(radius < distance) || tracer->bundles->group_count > GROUPS_MAX)
         return;
-    Cone cone;
-    cone.axis = v3_scale(to_center, 1 / distance);
-    cone.apex = trace_ray_from(from, cone.axis).o;
-    cone.sine = radius / distance;
-    cone.cosine = sqrt(1 - cone.sine * cone.sine);
-    cone.length = distance + radius;
-    cone.slack = 16 * from->p_error;
-    cone.light = v3_add(from->p, to_center);
-    cone.radius = radius;
-    int count = 0;
-    for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
-        if (is_outside(&cone, &tracer->objects[i]))
-            continue;
-        if (count == SHADOW_BUNDLE_MAX)
-            return;
-        out->object[count++] = i;
-    }
-    out->count = count;
+    /* All rays must leave on one side of the surface: then they start at the same point. */
+    double above = fabs(v3_dot(to_center, from->ng));
+    if (!(above > radius))
+        return;
+    Hull hull;
+    V3 apex = trace_ray_from(from, to_center).o;
+    if (!hull_init(&hull, apex, 16 * from->p_error, v3_add(from->p, to_center), radius))
+        return;
+    out->count = 0;
+    if (!note_all(tracer, &hull, out))
+        out->count = -1;
 }

@@ -140,7 +140,7 @@ Rgb trace_shadow(TraceThread *thread, const ShapePoint *from, V3 to, double dist
                  bool blocks_targets);
 
 /* The objects that shadow rays from one point to the points of one area light may meet. */
-enum { SHADOW_BUNDLE_MAX = 16 };
+enum { SHADOW_BUNDLE_MAX = 24 };
 typedef struct ShadowBundle {
     int count; /* negative: more than fit, every ray asks for itself */
     uint32_t object[SHADOW_BUNDLE_MAX];

@@ -25,6 +25,11 @@ typedef struct TracedObject {
     bool is_closed; /* made of closed solids: normals tell entering from leaving */
 } TracedObject;
 
+/* Objects grouped for bundles of shadow rays. */
+typedef struct BundleIndex BundleIndex;
+BundleIndex *bundle_index_new(const TracedObject *objects, uint32_t object_count); /* or NULL */
+void bundle_index_free(BundleIndex *index);
+
 struct Tracer {
     const Scene *scene;
     const Plan *plan;
@@ -35,6 +40,7 @@ struct Tracer {
     uint32_t unbounded_count;
     uint32_t *clear; /* solids that may let light through, ascending */
     uint32_t clear_count;
+    BundleIndex *bundles;
     ViewIndex *camera_view;  /* NULL: none */
     ViewIndex **light_views; /* per light; NULL: none */
     Bound bound;

@@ -3,6 +3,7 @@
 #include "trace/trace_int.h"
 
 #include "base/mem.h"
+#include "math/eps.h"
 
 #include <string.h>
 
@@ -49,6 +50,22 @@ static void summarize(const Scene *scene, const Shape *shape, LeafSummary *sum)
     sum->may_transmit |= surface->may_transmit;
 }
 
+/* Return the largest factor by which the transform stretches: exact when its columns are at
+ * right angles (scaled, then turned), else somewhat more.  It is the root of a bound on the
+ * eigenvalues of the columns' products (Gershgorin's circles). */
+static double largest_stretch(const Xform *x)
+{
+    double most = 0;
+    for (int i = 0; i < 3; i++) {
+        double sum = 0;
+        for (int j = 0; j < 3; j++)
+            sum += fabs(x->to[0][i] * x->to[0][j] + x->to[1][i] * x->to[1][j] +
+                        x->to[2][i] * x->to[2][j]);
+        most = fmax(most, sum);
+    }
+    return sqrt(most);
+}
+
 /* A little larger than it need be, for the rounding of tests against it. */
 static void set_ball(const Object *object, TracedObject *out)
 {
@@ -57,11 +74,13 @@ static void set_ball(const Object *object, TracedObject *out)
         return;
     out->center = bound_center(object->bound);
     out->radius = bound_radius(object->bound) * (1 + 1e-9);
-    out->has_ball = shape->kind != SHAPE_SPHERE;
-    if (shape->kind == SHAPE_SPHERE && !shape->is_transformed) {
-        /* Its box is that much larger. */
-        V3 size = v3_sub(object->bound.hi, object->bound.lo);
-        out->radius = 0.5 * fmax(size.x, fmax(size.y, size.z)) * (1 + 1e-9);
+    out->has_ball = true;
+    if (shape->kind == SHAPE_SPHERE) {
+        /* The box around it is that much larger. */
+        double stretch = shape->is_transformed ? largest_stretch(&shape->xform) : 1;
+        double rounding = 32 * EPS_DOUBLE * v3_max_abs(out->center);
+        double own = shape->u.sphere.radius * stretch * (1 + 1e-9) + rounding;
+        out->radius = fmin(out->radius, own);
     }
     out->radius2 = out->radius * out->radius;
 }
@@ -176,6 +195,10 @@ Status tracer_new(const Scene *scene, const Plan *plan, int threads, Diag *diag,
     if (bound_is_empty(tracer->bound))
         tracer->bound = (Bound){{0, 0, 0}, {0, 0, 0}};
     Status status = index_objects(tracer, threads, diag);
+    if (status == OK) {
+        tracer->bundles = bundle_index_new(tracer->objects, scene->object_count);
+        status = tracer->bundles ? OK : diag_no_memory(diag, "the tracer");
+    }
     if (status != OK) {
         tracer_free(tracer);
         return status;
@@ -189,6 +212,7 @@ void tracer_free(Tracer *tracer)
     if (!tracer)
         return;
     box_index_free(tracer->index);
+    bundle_index_free(tracer->bundles);
     view_index_free(tracer->camera_view);
     for (int i = 0; tracer->light_views && i < tracer->scene->light_count; i++)
         view_index_free(tracer->light_views[i]);
