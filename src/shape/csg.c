@@ -23,6 +23,8 @@ typedef struct Sweep {
     int child_count, inside_count;
     int written; /* results so far, from the start of items' range */
     int lister;  /* the only child with crossings, or one of the two below */
+    const ConvexCore *core; /* stands for all convex leaves under the number of the first, slot */
+    uint32_t slot;
 } Sweep;
 
 enum { NO_CHILD = -1, MANY_CHILDREN = -2 };
@@ -73,6 +75,14 @@ static void sweep_single(Sweep *s, int at)
         kept->change = 0;
 }
 
+/* Return the number of the child a crossing is of, in written order. */
+static uint32_t written_place(const Sweep *s, const Crossing *c)
+{
+    if (!s->core || c->child != s->slot)
+        return c->child;
+    return (uint32_t)(c->change > 0 ? s->core->entry.child : s->core->exit.child);
+}
+
 /* Return the crossing that lends an event its look: going the way of the event if it has one
  * (`change` not 0), visible rather than not, of the child written first. */
 static int choose(const Sweep *s, int from, int to, int change)
@@ -81,7 +91,8 @@ static int choose(const Sweep *s, int from, int to, int change)
     for (int i = from; i < to; i++) {
         const Crossing *c = &s->items[i];
         int score = 2 * (change == 0 || c->change == change) + c->is_visible;
-        if (score > best_score || (score == best_score && c->child < s->items[best].child)) {
+        if (score > best_score ||
+            (score == best_score && written_place(s, c) < written_place(s, &s->items[best]))) {
             best = i;
             best_score = score;
         }
@@ -242,32 +253,76 @@ static void block_cut(const ReachBlock *b, const Line *line, BlockCut *out)
 static bool list_reached(const Shape *shape, const Line *line, ShapeScratch *scratch);
 
 /* List child i of a node; *cut is that of its block.  Returns its state before the line. */
-static bool list_child(const Shape *node, int i, const Line *line, BlockCut *cut,
+static bool list_child(const Shape *node, int i, const Line *line, const BlockCut *cut,
                        ShapeScratch *scratch)
 {
     if (!node->is_finished || !node->reaches)
         return csg_list(node->children[i], line, scratch);
     const ReachBlock *block = &node->reaches[i / BLOCK];
     int k = i % BLOCK;
-    if (k == 0)
-        block_cut(block, line, cut);
     if (cut->near[k] > cut->far[k])
         return block->is_inside_beyond[k];
     Line part = {line->ray, line->inverse, cut->near[k], cut->far[k]};
     return list_reached(node->children[i], &part, scratch);
 }
 
-/* List the children of a node; returns false if the line never enters an intersection. */
-static bool list_children(const Shape *node, Line line, ShapeScratch *scratch, long first, Sweep *s)
+static void note_lister(Sweep *s, int child)
 {
+    s->lister = s->lister == NO_CHILD ? child : MANY_CHILDREN;
+}
+
+/* List the convex leaves of an intersection as one child; false when they share nothing. */
+static bool list_core(const Shape *node, Line *line, ShapeScratch *scratch, long first, Sweep *s,
+                      ConvexCore *core)
+{
+    if (!convex_core(node, line->ray, line->near, line->far, core))
+        return false;
+    bool has_entry = core->entry.child != NO_CONVEX, has_exit = core->exit.child != NO_CONVEX;
+    s->core = core;
+    s->slot = UINT32_MAX;
+    for (int i = 0; i < node->child_count; i++) {
+        if (!node->children[i]->is_convex_leaf)
+            continue;
+        s->slot = s->slot == UINT32_MAX ? (uint32_t)i : s->slot;
+        bool is_inside = !has_entry || s->slot != (uint32_t)i;
+        scratch->states[first + i] = is_inside;
+        s->inside_count += is_inside;
+    }
+    if (has_entry) {
+        convex_push(&core->entry, s->slot, scratch);
+        line->near = num_max(line->near, 2 * core->entry.lo - core->entry.hi);
+    }
+    if (has_exit) {
+        convex_push(&core->exit, s->slot, scratch);
+        line->far = num_min(line->far, 2 * core->exit.hi - core->exit.lo);
+    }
+    if (has_entry || has_exit)
+        note_lister(s, (int)s->slot);
+    return true;
+}
+
+/* List the children of a node; returns false if the line never enters an intersection. */
+static bool list_children(const Shape *node, Line line, ShapeScratch *scratch, long first, Sweep *s,
+                          ConvexCore *core)
+{
+    bool has_core = s->rule == RULE_INTERSECTION && node->is_finished && node->convex_count > 1;
+    if (has_core && !list_core(node, &line, scratch, first, s, core))
+        return false;
+    if (has_core && node->convex_count == node->child_count)
+        return true;
     BlockCut cut;
     for (int i = 0; i < node->child_count; i++) {
+        bool is_first_of_block = i % BLOCK == 0;
+        if (is_first_of_block && node->is_finished && node->reaches)
+            block_cut(&node->reaches[i / BLOCK], &line, &cut);
+        if (has_core && node->children[i]->is_convex_leaf)
+            continue;
         int from = scratch->count;
         bool inside = list_child(node, i, &line, &cut, scratch);
         scratch->states[first + i] = inside;
         s->inside_count += inside;
         if (scratch->count > from) {
-            s->lister = s->lister == NO_CHILD ? i : MANY_CHILDREN;
+            note_lister(s, i);
             tag(scratch, from, (uint32_t)i);
         }
         if (s->rule != RULE_INTERSECTION || inside)
@@ -294,7 +349,8 @@ static bool node_list(const Shape *node, const Line *line, ShapeScratch *scratch
     if (first < 0)
         return false;
     bool inside_before = false;
-    if (list_children(node, *line, scratch, first, &s)) {
+    ConvexCore core;
+    if (list_children(node, *line, scratch, first, &s, &core)) {
         s.inside = scratch->states + first;
         inside_before = is_inside_node(&s);
         /* If only one child has crossings, and the others leave it as it is, all is done. */

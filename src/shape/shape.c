@@ -4,7 +4,7 @@
 
 #include "base/mem.h"
 
-static inline void leaf_hits(const Shape *shape, const Ray *ray, LeafHits *out)
+void leaf_hits(const Shape *shape, const Ray *ray, LeafHits *out)
 {
     LocalRay local;
     local_ray(shape, ray, &local);

@@ -101,7 +101,9 @@ struct Shape {
                       never textured */
     int clip_count;
     ShapeRounding rounding;
-    bool is_finished;      /* the two below are set: shape_finish */
+    bool is_finished;      /* the fields below are set: shape_finish */
+    bool is_convex_leaf;   /* every line is inside it along one stretch */
+    int convex_count;      /* convex leaves among the children of an intersection */
     bool is_inside_beyond; /* what lies outside `reach` is inside the solid */
     Bound reach;           /* around every crossing, visible or not */
     const ReachBlock *reaches; /* of the children, packed; NULL: not made */

@@ -173,6 +173,34 @@ struct ShapeScratch {
  * so. */
 void scratch_push(ShapeScratch *scratch, const Crossing *crossing);
 
+/* Find the crossings of a solid leaf that is not a mesh and a line, before any inversion. */
+void leaf_hits(const Shape *shape, const Ray *ray, LeafHits *out);
+
+/* One end of the core: a hit of the child that lends it its look, and where the hits of all
+ * children that end there may be. */
+typedef struct ConvexEnd {
+    LeafHit hit;
+    const Shape *leaf;
+    double lo, hi;
+    int child; /* NO_CONVEX: the core has no such end */
+} ConvexEnd;
+
+enum { NO_CONVEX = -1 };
+
+/* What the convex leaves among the children of an intersection share along a line. */
+typedef struct ConvexCore {
+    ConvexEnd entry, exit;
+} ConvexCore;
+
+/* Return whether every line is inside the leaf (its inversion applied) along one stretch. */
+bool shape_is_convex_leaf(const Shape *shape);
+
+/* Find the core of an intersection; false when it is empty on [near, far]. */
+bool convex_core(const Shape *node, const Ray *ray, double near, double far, ConvexCore *core);
+
+/* Push an end of the core as a crossing of child `slot`. */
+void convex_push(const ConvexEnd *end, uint32_t slot, ShapeScratch *scratch);
+
 /* Push the crossings of a leaf or of a mesh, without inversion and clips; returns whether the
  * line starts inside. */
 bool leaf_list(const Shape *shape, const Ray *ray, ShapeScratch *scratch);

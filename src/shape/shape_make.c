@@ -280,5 +280,9 @@ void shape_finish(Arena *arena, Shape *shape)
         shape_finish(arena, shape->clips[i]);
     shape->reach = shape_reach(shape, &shape->is_inside_beyond);
     shape->reaches = pack_reaches(arena, shape);
+    shape->is_convex_leaf = shape_is_convex_leaf(shape);
+    shape->convex_count = 0;
+    for (int i = 0; i < shape->child_count; i++)
+        shape->convex_count += shape->children[i]->is_convex_leaf;
     shape->is_finished = true;
 }
