@@ -129,6 +129,9 @@ $(B)/%.o: %.cpp
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CXX) $(ALLCXXFLAGS) -MMD -MP -c -o $@ $<
 
+# The photon bench listens in on the rays of the pass.
+$(B)/tests/bench/photon_bench: private OPT += -Wl,--wrap=trace_closest
+
 $(B)/tests/bench/%_bench: $(B)/tests/bench/%_bench.o $(B)/libpms.a
 	@echo "  link    $@"
 	$(Q)$(CXX) $(OPT) -pthread $(LDFLAGS) -o $@ $^ $(LIBS)

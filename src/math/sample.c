@@ -28,19 +28,21 @@ static uint32_t mix_upward(uint32_t x, uint32_t seed)
     return x;
 }
 
-static uint32_t scramble(uint32_t x, uint32_t seed)
+/* Scramble a fraction whose digits are given in reverse. */
+static uint32_t scramble_reversed(uint32_t x, uint32_t seed)
 {
-    return reverse_bits(mix_upward(reverse_bits(x), seed));
+    return reverse_bits(mix_upward(x, seed));
 }
 
-/* Second Sobol dimension: column i of Pascal's triangle mod 2, as a fraction. */
-static uint32_t sobol_second(uint32_t index)
+/* Second Sobol dimension, as a reversed fraction: digit j is the sum of the digits i of the
+ * index whose bits include those of j (binomials modulo 2, by Lucas), all five bits in turn. */
+static uint32_t sobol_second_reversed(uint32_t index)
 {
-    uint32_t result = 0;
-    for (uint32_t column = 1u << 31; index; index >>= 1, column ^= column >> 1)
-        if (index & 1)
-            result ^= column;
-    return result;
+    index ^= (index >> 1) & 0x55555555u;
+    index ^= (index >> 2) & 0x33333333u;
+    index ^= (index >> 4) & 0x0f0f0f0fu;
+    index ^= (index >> 8) & 0x00ff00ffu;
+    return index ^ (index >> 16);
 }
 
 static double to_unit(uint32_t x)
@@ -51,9 +53,9 @@ static double to_unit(uint32_t x)
 V2 sample_2d(uint32_t index, uint64_t key)
 {
     uint64_t seeds = rng_mix(key + 0x9e3779b97f4a7c15u), more = rng_mix(seeds + key);
-    index = scramble(index, (uint32_t)more);
-    uint32_t first = scramble(reverse_bits(index), (uint32_t)seeds);
-    uint32_t second = scramble(sobol_second(index), (uint32_t)(seeds >> 32));
+    index = reverse_bits(mix_upward(reverse_bits(index), (uint32_t)more));
+    uint32_t first = scramble_reversed(index, (uint32_t)seeds);
+    uint32_t second = scramble_reversed(sobol_second_reversed(index), (uint32_t)(seeds >> 32));
     return (V2){to_unit(first), to_unit(second)};
 }
 

@@ -175,11 +175,17 @@ void beam_set_cells(Beam *beam, const float *found)
         }
     beam->cumulative[cells - 1] = 1;
     beam->covered = (double)covered / cells;
+    for (int g = 0, cell = 0; g <= BEAM_GUIDES; g++) {
+        while (cell < cells - 1 && beam->cumulative[cell] <= (float)g / BEAM_GUIDES)
+            cell++;
+        beam->guide[g] = (uint16_t)cell;
+    }
 }
 
 V2 beam_warp(const Beam *beam, V2 uniform, double *density)
 {
-    int side = beam->side, low = 0, high = side * side - 1;
+    int side = beam->side, guide = (int)(uniform.u * BEAM_GUIDES);
+    int low = beam->guide[guide], high = beam->guide[guide + 1];
     while (low < high) {
         int middle = (low + high) / 2;
         if (uniform.u < (double)beam->cumulative[middle])

@@ -6,6 +6,8 @@
 #include "math/sample.h"
 #include "trace/trace.h"
 
+enum { BEAM_GUIDES = 256 };
+
 /* Rays are drawn from the unit square: onto the cone around a ball, or the disk across it.
  * The square is divided into cells, each with a density of its own. */
 typedef struct Beam {
@@ -17,9 +19,11 @@ typedef struct Beam {
     double spacing_factor; /* the target's */
     int side;              /* cells a side */
     float *cumulative;     /* of the weights of cells, row by row; side * side, ends with 1 */
-    double flux;           /* onto the target, summed RGB, estimated by a pilot */
-    double covered;        /* part of the square whose cells were found to matter */
-    uint64_t budget;       /* photons to send */
+    uint16_t guide[BEAM_GUIDES + 1]; /* the cell in which each part of the weight begins */
+    uint64_t square_key, area_key, choice_key; /* of its sequences of points */
+    double flux;     /* onto the target, summed RGB, estimated by a pilot */
+    double covered;  /* part of the square whose cells were found to matter */
+    uint64_t budget; /* photons to send */
 } Beam;
 
 /* A ray of a beam, and how to weigh what it carries. */

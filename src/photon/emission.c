@@ -9,13 +9,8 @@
 #include "base/mem.h"
 #include "base/work.h"
 
-enum {
-    CELL_RAYS_SIDE = 2, /* pilot rays a cell, each way */
-    CELLS_SIDE_MIN = 2,
-    PILOT_PART = 8,      /* the pilot sends at most this part of the photons, if it can */
-    PASS_PHOTON = 0x700, /* random numbers of photons, by map */
-    PASS_PILOT = 0x710
-};
+/* Random numbers, by map: of photons, and of the keys of their points. */
+enum { PASS_PHOTON = 0x700, PASS_KEYS = 0x720 };
 
 /* Most photons a spacing may ask for. */
 #define SPACING_PHOTONS_MAX 1e8
@@ -110,19 +105,26 @@ Rng emission_rng(const Emission *emission, const Beam *beam, uint64_t index)
     return rng_at(emission->options->seed, PASS_PHOTON + (uint32_t)emission->rules.map, item);
 }
 
-bool emission_ray(const Emission *emission, const Beam *beam, uint64_t index, BeamRay *out,
-                  double *first_choice)
+static void set_keys(Emission *emission)
 {
-    Rng keys = rng_at(emission->options->seed ^ 0x5eed, (uint32_t)emission->rules.map,
-                      emission_beam_number(emission, beam));
-    uint64_t square_key = rng_u64(&keys), area_key = rng_u64(&keys), choice_key = rng_u64(&keys);
+    for (int i = 0; i < emission->beam_count; i++) {
+        Beam *beam = &emission->beams[i];
+        Rng keys =
+            rng_at(emission->options->seed, PASS_KEYS + (uint32_t)emission->rules.map, (uint64_t)i);
+        beam->square_key = rng_u64(&keys);
+        beam->area_key = rng_u64(&keys);
+        beam->choice_key = rng_u64(&keys);
+    }
+}
+
+bool emission_ray(const Beam *beam, uint64_t index, BeamRay *out)
+{
     uint32_t number = (uint32_t)index;
     double density;
-    V2 square = beam_warp(beam, sample_2d(number, square_key), &density);
+    V2 square = beam_warp(beam, sample_2d(number, beam->square_key), &density);
     V2 area = {0.5, 0.5};
     if (beam->light->has_area_photons)
-        area = sample_2d(number, area_key);
-    *first_choice = sample_1d(number, choice_key);
+        area = sample_2d(number, beam->area_key);
     bool is_lit = beam_ray(beam, square, area, out);
     out->measure /= density * (double)beam->budget;
     return is_lit;
@@ -300,6 +302,7 @@ Status emission_init(Emission *emission, const Tracer *tracer, MapKind map,
     TRY(make_beams(emission));
     if (emission->beam_count == 0)
         return OK;
+    set_keys(emission);
     TRY(emission_pilot(emission, photons_wanted(emission, false)));
     return share_lights(emission, (uint64_t)photons_wanted(emission, true));
 }

@@ -35,8 +35,7 @@ static inline uint64_t emission_beam_number(const Emission *emission, const Beam
 }
 
 /* Draw ray `index` of a beam.  Returns false where the light does not shine. */
-bool emission_ray(const Emission *emission, const Beam *beam, uint64_t index, BeamRay *out,
-                  double *first_choice);
+bool emission_ray(const Beam *beam, uint64_t index, BeamRay *out);
 
 /* Return the generator of a photon. */
 Rng emission_rng(const Emission *emission, const Beam *beam, uint64_t index);

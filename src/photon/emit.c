@@ -49,12 +49,11 @@ static void emit_photon(Emission *emission, TraceThread *thread, Chunk *chunk, u
 {
     const Beam *beam = chunk->beam;
     BeamRay ray;
-    double first_choice;
     WalkResult result = {.end = PATH_CUT};
-    if (emission_ray(emission, beam, index, &ray, &first_choice)) {
+    if (emission_ray(beam, index, &ray)) {
         Rng rng = emission_rng(emission, beam, index);
-        photon_walk(thread, &emission->rules, beam, &ray, first_choice, least, &rng,
-                    &chunk->photons, &result);
+        photon_walk(thread, &emission->rules, beam, &ray, index, least, &rng, &chunk->photons,
+                    &result);
     }
     chunk->ends[result.end]++;
     if (!rgb_is_finite(result.emitted) || !rgb_is_finite(result.left))

@@ -8,6 +8,7 @@
 #include "photon/photon.h"
 
 #include <math.h>
+#include <string.h>
 
 /* sin(x) for |x| <= pi/2 from its series in y = x*x; the error is below 1e-13. */
 #define SERIES(x, y)                                                                               \
@@ -45,6 +46,23 @@ static const float phi_cos[DIRECTION_STEPS] = TABLE_256(PHI_COS);
 static const float theta_sin[DIRECTION_STEPS] = TABLE_256(THETA_SIN);
 static const float theta_cos[DIRECTION_STEPS] = TABLE_256(THETA_COS);
 
+/* Return e with x = m 2^e, m in [1/2, 1), of a positive normal number; far below for 0. */
+static int exponent_of(double x)
+{
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return (int)(bits >> 52) - 1022;
+}
+
+/* Return 2^e, for e in the range of normal doubles. */
+static double power_of_two(int e)
+{
+    uint64_t bits = (uint64_t)(e + 1023) << 52;
+    double x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
 /* Make a channel something that can be stored. */
 static double tame(float channel)
 {
@@ -55,23 +73,22 @@ static double tame(float channel)
 /* Round up with the probability of the fraction; `bits` is uniform in [0, 2^21). */
 static uint8_t round_at_random(double steps, uint64_t bits)
 {
-    double floor_steps = floor(steps);
-    return (uint8_t)(floor_steps + ((double)bits * 0x1p-21 < steps - floor_steps));
+    int whole = (int)steps;
+    return (uint8_t)(whole + ((double)bits * 0x1p-21 < steps - whole));
 }
 
 void rgbe_encode(Rgb power, Rng *rng, uint8_t out[4])
 {
     double r = tame(power.r), g = tame(power.g), b = tame(power.b);
     uint64_t bits = rng_u64(rng);
-    double most = fmax(r, fmax(g, b));
-    int exponent;
-    frexp(most, &exponent); /* most = m 2^exponent, m in [1/2, 1) */
-    exponent += RGBE_BIAS - 8;
-    if (ldexp(most, RGBE_BIAS - exponent) > 255) /* it could round up to 256 */
-        exponent++;
-    if (exponent < RGBE_LEAST || most == 0)
+    double most = r > g ? r : g;
+    most = most > b ? most : b;
+    int exponent = exponent_of(most) + RGBE_BIAS - 8;
+    if (exponent < RGBE_LEAST)
         exponent = RGBE_LEAST;
-    double scale = ldexp(1, RGBE_BIAS - exponent);
+    if (most * power_of_two(RGBE_BIAS - exponent) > 255) /* it could round up to 256 */
+        exponent++;
+    double scale = power_of_two(RGBE_BIAS - exponent);
     out[0] = round_at_random(r * scale, bits & 0x1fffff);
     out[1] = round_at_random(g * scale, bits >> 21 & 0x1fffff);
     out[2] = round_at_random(b * scale, bits >> 42 & 0x1fffff);
@@ -86,14 +103,28 @@ Rgb rgbe_decode(const uint8_t rgbe[4])
     return rgb((float)rgbe[0] * step, (float)rgbe[1] * step, (float)rgbe[2] * step);
 }
 
+/* Return the angle of (x, y) from the x axis, 0 to pi, for y >= 0; the error is below 2e-5, a
+ * hundredth of what a step of the codes allows.  The odd polynomial is a fit of the arc tangent
+ * on [0,1]. */
+static double upper_angle(double x, double y)
+{
+    double across = fabs(x), big = across > y ? across : y, small = across > y ? y : across;
+    double t = big > 0 ? small / big : 0, u = t * t;
+    double angle =
+        t * (0.9998660 + u * (-0.3302995 + u * (0.1801410 + u * (-0.0851330 + u * 0.0208351))));
+    angle = y > across ? PMS_PI / 2 - angle : angle;
+    return x < 0 ? PMS_PI - angle : angle;
+}
+
 void direction_encode(V3 unit, uint8_t *phi, uint8_t *theta)
 {
     if (!v3_is_finite(unit))
         unit = v3(0, 0, 1);
-    double polar = acos(fmin(1, fmax(-1, unit.z)));
-    double azimuth = atan2(unit.y, unit.x);
-    *theta = (uint8_t)lrint(polar * ((DIRECTION_STEPS - 1) / PMS_PI));
-    *phi = (uint8_t)(lrint(azimuth * (DIRECTION_STEPS / (2 * PMS_PI))) & (DIRECTION_STEPS - 1));
+    double polar = upper_angle(unit.z, sqrt(unit.x * unit.x + unit.y * unit.y));
+    double azimuth = upper_angle(unit.x, fabs(unit.y));
+    int steps = (int)(azimuth * (DIRECTION_STEPS / (2 * PMS_PI)) + 0.5);
+    *theta = (uint8_t)(polar * ((DIRECTION_STEPS - 1) / PMS_PI) + 0.5);
+    *phi = (uint8_t)((unit.y < 0 ? -steps : steps) & (DIRECTION_STEPS - 1));
 }
 
 V3 direction_decode(uint8_t phi, uint8_t theta)
@@ -105,7 +136,8 @@ V3 direction_decode(uint8_t phi, uint8_t theta)
 /* One coordinate of the octahedral square, [-1,1] to 0..126. */
 static unsigned octahedral_step(double x)
 {
-    return (unsigned)lrint((fmin(1, fmax(-1, x)) + 1) * ((NORMAL_STEPS - 1) / 2));
+    double step = (x + 1) * ((NORMAL_STEPS - 1) / 2) + 0.5;
+    return step < NORMAL_STEPS - 1 ? (unsigned)step : NORMAL_STEPS - 1;
 }
 
 uint16_t normal14_encode(V3 unit)

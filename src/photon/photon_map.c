@@ -10,6 +10,7 @@
 
 #include "base/mem.h"
 #include "base/work.h"
+#include "photon/lanes_int.h"
 
 #include <string.h>
 
@@ -26,6 +27,8 @@ typedef struct Key {
     float pos[3];
     uint32_t index; /* of the photon */
 } Key;
+
+static_assert(sizeof(Key) == 4 * sizeof(float), "keys are read four floats at a time");
 
 typedef struct Build {
     PhotonMap *map;
@@ -52,10 +55,9 @@ static size_t partition_keys(Key *keys, size_t count, int axis, float pivot, boo
 {
     size_t front = 0;
     for (size_t i = 0; i < count; i++) {
-        Key key = keys[i];
-        keys[i] = keys[front];
-        keys[front] = key;
-        front += has_equal ? key.pos[axis] <= pivot : key.pos[axis] < pivot;
+        float value = keys[i].pos[axis];
+        lanes_swap4(&keys[i], &keys[front]);
+        front += has_equal ? value <= pivot : value < pivot;
     }
     return front;
 }
@@ -108,15 +110,8 @@ static float cut_keys(Key *keys, size_t count, int axis, size_t target)
 
 static int longest_axis(const Key *keys, size_t count)
 {
-    float lo[3], hi[3];
-    memcpy(lo, keys[0].pos, sizeof lo);
-    memcpy(hi, keys[0].pos, sizeof hi);
-    for (size_t i = 1; i < count; i++)
-        for (int a = 0; a < 3; a++) {
-            float value = keys[i].pos[a];
-            lo[a] = value < lo[a] ? value : lo[a];
-            hi[a] = value > hi[a] ? value : hi[a];
-        }
+    float lo[4], hi[4];
+    lanes_range4(keys[0].pos, count, lo, hi);
     float dx = hi[0] - lo[0], dy = hi[1] - lo[1], dz = hi[2] - lo[2];
     return dx >= dy ? (dx >= dz ? 0 : 2) : (dy >= dz ? 1 : 2);
 }

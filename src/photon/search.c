@@ -20,8 +20,8 @@ enum {
     STACK_MAX = 40,  /* deeper than any tree of 2^32 photons */
     ROOM_FACTOR = 4, /* room for so many times k before the radius is cut down */
     ROOM_MIN = 256,
-    COUNTING_MAX = 24, /* rounds of interpolation before the rest is selected */
-    SELECT_MAX = 8     /* candidates worth selecting at once */
+    COUNTING_MAX = 12, /* rounds of interpolation before bisecting */
+    SELECT_MAX = 12    /* candidates worth sorting */
 };
 
 /* Cells as far as the radius are still walked: their distance was rounded. */
@@ -82,32 +82,42 @@ static void block_facing(const Search *search, const PhotonBlock *block, float o
 
 /* --- cutting down to k ------------------------------------------------------------------ */
 
-static size_t count_not_above(const float *values, size_t count, float limit)
-{
-    unsigned total = 0;
-    for (size_t i = 0; i < count; i++)
-        total += values[i] <= limit;
-    return total;
-}
-
-/* Return the rank-th smallest (from 1) of the values in (below, above], of which there are
- * `count`; `values` is all of them. */
-static float select_between(const float *values, size_t total, float below, float above,
+/* Return the rank-th smallest (from 1) of the `wanted` values in (below, above]. */
+static float select_between(const float *values, size_t count, float below, float above,
                             size_t rank)
 {
-    float last = below;
-    while (rank > 0) { /* the next larger value and how often it occurs */
-        float next = above;
-        size_t times = 0;
-        for (size_t i = 0; i < total; i++) {
-            bool is_less = values[i] > last && values[i] < next;
-            times = is_less ? 1 : times + (values[i] == next);
-            next = is_less ? values[i] : next;
-        }
-        last = next;
-        rank = rank > times ? rank - times : 0;
+    float sorted[SELECT_MAX + 1];
+    size_t found = 0;
+    for (size_t i = 0; i < count; i++) {
+        float value = values[i];
+        sorted[found] = value;
+        found += value > below && value <= above;
     }
-    return last;
+    for (size_t i = 1; i < found; i++) {
+        float value = sorted[i];
+        size_t j = i;
+        for (; j > 0 && value < sorted[j - 1]; j--)
+            sorted[j] = sorted[j - 1];
+        sorted[j] = value;
+    }
+    return sorted[rank - 1];
+}
+
+static float float_of_bits(uint32_t bits)
+{
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* The same for any number of candidates: bisect on the bits, which order like the numbers. */
+static float bisect_bits(const float *values, size_t count, size_t k)
+{
+    uint32_t last = 0;
+    for (uint32_t bit = 1u << 30; bit; bit >>= 1)
+        if (lanes_count(values, count, float_of_bits(last + (bit - 1))) < k)
+            last += bit;
+    return float_of_bits(last);
 }
 
 static float largest_of(const float *values, size_t count)
@@ -118,19 +128,17 @@ static float largest_of(const float *values, size_t count)
     return largest;
 }
 
-/* Return the k-th smallest of `count` values, none negative; 0 < k <= count. */
-static float kth_smallest(const float *values, size_t count, size_t k)
+/* Return the k-th smallest of `count` values, none negative, all <= most; 0 < k <= count. */
+static float kth_smallest(const float *values, size_t count, size_t k, float most)
 {
-    float below = -1, above = largest_of(values, count);
+    float below = -1, above = isfinite(most) ? most : largest_of(values, count);
     size_t count_below = 0, count_above = count;
-    for (int round = 0; round < COUNTING_MAX && count_above - count_below > SELECT_MAX; round++) {
+    for (int round = 0; count_above - count_below > SELECT_MAX; round++) {
         float share = ((float)(k - count_below) - 0.5f) / (float)(count_above - count_below);
-        float low = below < 0 ? 0 : below;
-        float middle =
-            round < COUNTING_MAX / 2 ? low + (above - low) * share : low + (above - low) * 0.5f;
-        if (!(middle > below && middle < above))
-            break;
-        size_t here = count_not_above(values, count, middle);
+        float low = below < 0 ? 0 : below, middle = low + (above - low) * share;
+        if (round == COUNTING_MAX || !(middle > below && middle < above))
+            return bisect_bits(values, count, k);
+        size_t here = lanes_count(values, count, middle);
         if (here >= k) {
             above = middle;
             count_above = here;
@@ -162,22 +170,24 @@ static uint32_t last_of_ties(const FoundPhotons *found, float level, size_t want
  * are needed to make `keep`, lowest numbers first.  The order stays. */
 static void keep_nearest(FoundPhotons *found, float level, size_t keep)
 {
-    size_t nearer = 0, ties = 0;
-    for (size_t i = 0; i < found->count; i++) {
-        nearer += found->distance2[i] < level;
-        ties += found->distance2[i] == level;
-    }
-    bool has_ties = keep > nearer; /* some of those at the level belong to it */
-    uint32_t last = UINT32_MAX;
-    if (has_ties && keep - nearer < ties)
-        last = last_of_ties(found, level, keep - nearer);
-    size_t kept = 0;
-    for (size_t i = 0; i < found->count; i++) {
-        float distance2 = found->distance2[i];
-        uint32_t index = found->index[i];
-        found->distance2[kept] = distance2;
-        found->index[kept] = index;
-        kept += distance2 < level || (has_ties && distance2 == level && index <= last);
+    float *distance2 = found->distance2;
+    uint32_t *index = found->index;
+    float nearer_limit = nextafterf(level, -1);
+    size_t nearer = lanes_count(distance2, found->count, nearer_limit), kept = 0;
+    size_t up_to = lanes_count(distance2, found->count, level);
+    uint32_t last = keep < up_to && keep > nearer ? last_of_ties(found, level, keep - nearer) : 0;
+    for (size_t i = 0; i < found->count; i += LANES) {
+        unsigned there = lanes_there(found->count - i);
+        unsigned mask = lanes_not_above(distance2 + i, nearer_limit) & there;
+        if (keep > nearer) { /* some of those at the level belong to it */
+            unsigned ties = lanes_not_above(distance2 + i, level) & there & ~mask;
+            for (; ties; ties &= ties - 1) {
+                int lane = __builtin_ctz(ties);
+                if (keep >= up_to || index[i + (size_t)lane] <= last)
+                    mask |= 1u << lane;
+            }
+        }
+        kept += lanes_keep(mask, distance2 + i, index + i, distance2 + kept, index + kept);
     }
     found->count = kept;
 }
@@ -189,10 +199,11 @@ static void make_room(Search *search)
     FoundPhotons *found = search->found;
     if (search->wanted == SIZE_MAX) {
         size_t capacity = found->capacity * 2;
-        float *distance2 = mem_resize(found->distance2, capacity * sizeof *distance2);
+        float *distance2 = mem_resize(found->distance2, (capacity + LANES) * sizeof *distance2);
         if (distance2)
             found->distance2 = distance2;
-        uint32_t *index = distance2 ? mem_resize(found->index, capacity * sizeof *index) : NULL;
+        uint32_t *index =
+            distance2 ? mem_resize(found->index, (capacity + LANES) * sizeof *index) : NULL;
         if (index) {
             found->index = index;
             found->capacity = capacity;
@@ -200,7 +211,7 @@ static void make_room(Search *search)
         }
         search->wanted = found->capacity / 2;
     }
-    search->radius2 = kth_smallest(found->distance2, found->count, search->wanted);
+    search->radius2 = kth_smallest(found->distance2, found->count, search->wanted, search->radius2);
     keep_nearest(found, search->radius2, search->wanted);
 }
 
@@ -246,7 +257,8 @@ static void walk(Search *search)
             bool is_right = delta >= 0;
             Cell far = cell;
             far.node = 2 * cell.node + (is_right ? 1 : 2);
-            far.off[axis] = fmaxf(fabsf(delta) - map->slack, 0);
+            float off = fabsf(delta) - map->slack;
+            far.off[axis] = off > 0 ? off : 0;
             far.distance2 =
                 far.off[0] * far.off[0] + far.off[1] * far.off[1] + far.off[2] * far.off[2];
             stack[depth] = far;
@@ -294,7 +306,8 @@ static void search_nearest(Search *search, float most, float *guess)
         search->radius2 = wider > tried ? fminf(wider, most) : most;
     }
     if (found->count >= search->wanted) {
-        search->radius2 = kth_smallest(found->distance2, found->count, search->wanted);
+        search->radius2 =
+            kth_smallest(found->distance2, found->count, search->wanted, search->radius2);
         *guess = search->radius2 * GUESS_FACTOR;
         keep_nearest(found, search->radius2, search->wanted - 1);
     } else {
@@ -307,10 +320,11 @@ static bool has_room(FoundPhotons *found, size_t capacity)
 {
     if (found->capacity >= capacity)
         return true;
-    float *distance2 = mem_resize(found->distance2, capacity * sizeof *distance2);
+    float *distance2 = mem_resize(found->distance2, (capacity + LANES) * sizeof *distance2);
     if (distance2)
         found->distance2 = distance2;
-    uint32_t *index = distance2 ? mem_resize(found->index, capacity * sizeof *index) : NULL;
+    uint32_t *index =
+        distance2 ? mem_resize(found->index, (capacity + LANES) * sizeof *index) : NULL;
     if (index) {
         found->index = index;
         found->capacity = capacity;

@@ -15,15 +15,17 @@ typedef struct Walk {
     const BeamRay *start;
     Ray ray;
     Interiors inside;
-    double length; /* gone in all up to the last surface */
-    Rgb weight;    /* share of the light that is left */
-    Rgb flux;      /* of a weight of 1; fixed at the first diffuse surface */
+    double length;      /* gone in all up to the last surface */
+    Rgb weight;         /* share of the light that is left */
+    Rgb flux;           /* of a weight of 1 at flux_length; fixed at the first diffuse surface */
+    double flux_length; /* negative: not known yet */
     int level;
     bool is_aimed;    /* has met its target, or needs none */
     bool is_specular; /* was reflected or refracted */
     bool is_diffuse;  /* was reflected diffusely */
     bool is_straight; /* the last surface did not bend it */
-    double choice;    /* of the first roulette; negative: used up */
+    bool has_chosen;  /* thrown the dice before */
+    uint64_t index;   /* of the photon */
     Rng *rng;
 } Walk;
 
@@ -51,9 +53,13 @@ static void absorb_segment(Walk *walk, double t)
         walk->weight = rgb_mul(walk->weight, interior_fade(interior, t, false));
 }
 
-static Rgb flux_here(const Walk *walk)
+static Rgb flux_here(Walk *walk)
 {
-    return walk->is_diffuse ? walk->flux : beam_flux(walk->beam, walk->start, walk->length);
+    if (!walk->is_diffuse && walk->flux_length != walk->length) {
+        walk->flux = beam_flux(walk->beam, walk->start, walk->length);
+        walk->flux_length = walk->length;
+    }
+    return walk->flux;
 }
 
 /* --- the roulette ----------------------------------------------------------------------- */
@@ -105,15 +111,19 @@ static void set_roulette(const Walk *walk, const SurfaceSample *s, Rgb diffuse, 
     set_odds(out);
 }
 
+/* The first choice of the photons of a beam is stratified over them. */
 static double next_choice(Walk *walk)
 {
-    double choice = walk->choice;
-    walk->choice = -1;
-    return choice >= 0 ? choice : rng_double(walk->rng);
+    if (walk->has_chosen)
+        return rng_double(walk->rng);
+    walk->has_chosen = true;
+    return sample_1d((uint32_t)walk->index, walk->beam->choice_key);
 }
 
 static Branch spin(Walk *walk, const Roulette *r)
 {
+    if (r->p_transmit >= 1) /* a surface that leaves no choice, not to the dice either */
+        return BRANCH_TRANSMIT;
     double x = next_choice(walk);
     if (x < r->p_transmit)
         return BRANCH_TRANSMIT;
@@ -196,8 +206,7 @@ static void bounce_diffusely(Walk *walk, const SurfaceSample *s)
 {
     V2 u = {rng_double(walk->rng), 0};
     u.v = rng_double(walk->rng);
-    if (!walk->is_diffuse)
-        walk->flux = flux_here(walk);
+    flux_here(walk);
     walk->is_diffuse = true;
     leave(walk, s, v3_unit(warp_to_frame(warp_cosine(u), s->ng)), false);
 }
@@ -293,14 +302,15 @@ static bool meet_surface(Walk *walk, const SurfaceSample *s, float least, Photon
 }
 
 void photon_walk(TraceThread *thread, const WalkRules *rules, const Beam *beam,
-                 const BeamRay *start, double first_choice, float least, Rng *rng, PhotonList *out,
+                 const BeamRay *start, uint64_t index, float least, Rng *rng, PhotonList *out,
                  WalkResult *result)
 {
     Walk walk = {.thread = thread,
                  .rules = rules,
                  .beam = beam,
                  .start = start,
-                 .choice = first_choice,
+                 .flux_length = -1,
+                 .index = index,
                  .rng = rng};
     *result = (WalkResult){.end = PATH_CUT};
     begin(&walk);
@@ -328,8 +338,13 @@ void photon_walk(TraceThread *thread, const WalkRules *rules, const Beam *beam,
 Rgb photon_scout(TraceThread *thread, const WalkRules *rules, const Beam *beam,
                  const BeamRay *start, Rng *rng, V3 *at)
 {
-    Walk walk = {
-        .thread = thread, .rules = rules, .beam = beam, .start = start, .choice = -1, .rng = rng};
+    Walk walk = {.thread = thread,
+                 .rules = rules,
+                 .beam = beam,
+                 .start = start,
+                 .flux_length = -1,
+                 .has_chosen = true,
+                 .rng = rng};
     begin(&walk);
     Rgb found = RGB_BLACK;
     for (int surfaces = 0; surfaces < PATH_SURFACES_MAX; surfaces++) {

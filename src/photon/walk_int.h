@@ -46,10 +46,10 @@ typedef struct WalkResult {
 
 /* Follow a photon, adding what is stored to `out`.
  *
- * first_choice  random number of the first roulette, stratified over the photons of the beam.
- * least         photons of less power are thinned out to this one, largest channel. */
+ * index  of the photon in its beam: the first roulettes of all are stratified.
+ * least  photons of less power are thinned out to this one, largest channel. */
 void photon_walk(TraceThread *thread, const WalkRules *rules, const Beam *beam,
-                 const BeamRay *start, double first_choice, float least, Rng *rng, PhotonList *out,
+                 const BeamRay *start, uint64_t index, float least, Rng *rng, PhotonList *out,
                  WalkResult *result);
 
 /* Follow a photon to the first place that matters (the target; a diffuse surface, for the global
