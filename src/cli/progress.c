@@ -56,6 +56,7 @@ void progress_show(void *ctx, const RenderProgress *now)
     progress->last_phase = now->phase;
     /* Rounded down: what is not done is never shown as 100 %. */
     int percent = (int)floor(100 * now->fraction);
+    percent = percent < 100 ? percent : 99; /* the picture is not written yet */
     if (progress->kind == PROGRESS_JSON) {
         show_json(now, percent);
     } else {
