@@ -5,6 +5,8 @@
  * be asked only about that stretch.  SPDX-License-Identifier: Apache-2.0 */
 #include "shape/shape_int.h"
 
+#include <string.h>
+
 bool shape_is_convex_leaf(const Shape *shape)
 {
     if (shape->clip_count)
@@ -23,44 +25,148 @@ bool shape_is_convex_leaf(const Shape *shape)
 }
 
 /* Take a hit as an end of the core if it is further in.  Ends whose errors overlap are one
- * event, which shows the child written first: the one that is there already. */
+ * event, which shows the child written first. */
 static void move_end(ConvexEnd *end, const Shape *leaf, const LeafHit *hit, int child, int way)
 {
     double lo = hit->t - hit->t_error, hi = hit->t + hit->t_error;
     bool is_new = end->child == NO_CONVEX || (way > 0 ? lo > end->hi : hi < end->lo);
-    bool is_same_place = !is_new && lo <= end->hi && hi >= end->lo;
     if (is_new) {
         *end = (ConvexEnd){*hit, leaf, lo, hi, child};
-    } else if (is_same_place) {
-        end->lo = lo < end->lo ? lo : end->lo;
-        end->hi = hi > end->hi ? hi : end->hi;
+        return;
     }
+    if (lo > end->hi || hi < end->lo)
+        return;
+    end->lo = lo < end->lo ? lo : end->lo;
+    end->hi = hi > end->hi ? hi : end->hi;
+    if (child < end->child) {
+        end->hit = *hit;
+        end->leaf = leaf;
+        end->child = child;
+    }
+}
+
+/* Is nothing left between the ends on [near, far]? */
+static bool is_empty(const ConvexCore *core, double near, double far)
+{
+    bool has_entry = core->entry.child != NO_CONVEX, has_exit = core->exit.child != NO_CONVEX;
+    if ((has_entry && core->entry.lo > far) || (has_exit && core->exit.hi < near))
+        return true;
+    /* Two faces of one solid may be as near to each other as they like. */
+    return has_entry && has_exit && core->exit.lo <= core->entry.hi &&
+           core->entry.leaf != core->exit.leaf;
+}
+
+/* Cut the core by a leaf; false when the line is outside of it. */
+static bool cut_by_leaf(const Shape *node, int child, const Ray *ray, ConvexCore *core)
+{
+    const Shape *leaf = node->children[child];
+    LeafHits hits;
+    leaf_hits(leaf, ray, &hits);
+    for (int k = 0; k < hits.count; k++) {
+        int way = leaf->is_inverted ? -hits.at[k].change : hits.at[k].change;
+        move_end(way > 0 ? &core->entry : &core->exit, leaf, &hits.at[k], child, way);
+    }
+    return hits.count > 0 || hits.is_inside_before != leaf->is_inverted;
+}
+
+static Lanes lanes_load(const double numbers[BLOCK])
+{
+    Lanes out;
+    memcpy(&out, numbers, sizeof out);
+    return out;
+}
+
+static Lanes lanes_abs(Lanes x)
+{
+    return LANES_PICK(x < 0, -x, x);
+}
+
+/* Cut the core by a block of planes: as plane_hits, several at once.  Only those that may move
+ * an end are looked at one by one. */
+static bool cut_by_planes(const Shape *node, const PlaneBlock *b, const Ray *ray, ConvexCore *core)
+{
+    const Lanes x = lanes_load(b->n[0]), y = lanes_load(b->n[1]), z = lanes_load(b->n[2]);
+    const V3 o = ray->o, d = ray->d;
+    Lanes height = x * o.x + y * o.y + z * o.z - lanes_load(b->d);
+    Lanes speed = x * d.x + y * d.y + z * d.z, t = -height / speed;
+    Lanes at = lanes_abs(x * o.x) + lanes_abs(y * o.y) + lanes_abs(z * o.z);
+    Lanes per_t = lanes_abs(x * d.x) + lanes_abs(y * d.y) + lanes_abs(z * d.z);
+    Lanes reach = lanes_abs(t);
+    Lanes error =
+        (4 * EPS_DOUBLE * (at + reach * per_t) + lanes_load(b->place)) / lanes_abs(speed) +
+        2 * EPS_DOUBLE * reach;
+    double entry = core->entry.child == NO_CONVEX ? -INFINITY : core->entry.lo;
+    double exit = core->exit.child == NO_CONVEX ? INFINITY : core->exit.hi;
+    LaneMask is_entry = speed < 0;
+    /* A line along a plane gives no number here, and is looked at. */
+    LaneMask is_idle = (is_entry & (t + error < entry)) | (~is_entry & (t - error > exit));
+    for (int k = 0; k < BLOCK; k++) {
+        if (is_idle[k])
+            continue;
+        if (!isfinite(t[k]) || speed[k] == 0) {
+            if (!cut_by_leaf(node, b->child[k], ray, core))
+                return false;
+            continue;
+        }
+        const Shape *leaf = node->children[b->child[k]];
+        int way = is_entry[k] ? 1 : -1;
+        LeafHit hit = {t[k], error[k], 0, (int8_t)(leaf->is_inverted ? -way : way), true};
+        move_end(way > 0 ? &core->entry : &core->exit, leaf, &hit, b->child[k], way);
+    }
+    return true;
 }
 
 bool convex_core(const Shape *node, const Ray *ray, double near, double far, ConvexCore *core)
 {
     core->entry.child = core->exit.child = NO_CONVEX;
+    for (int i = 0; i < node->plane_blocks; i++)
+        if (!cut_by_planes(node, &node->planes[i], ray, core) || is_empty(core, near, far))
+            return false;
+    if (node->plane_blocks && node->plane_count == node->convex_count)
+        return true;
     for (int i = 0; i < node->child_count; i++) {
         const Shape *leaf = node->children[i];
-        if (!leaf->is_convex_leaf)
+        if (!leaf->is_convex_leaf || (node->plane_blocks && leaf->kind == SHAPE_PLANE))
             continue;
-        LeafHits hits;
-        leaf_hits(leaf, ray, &hits);
-        if (hits.count == 0 && hits.is_inside_before == leaf->is_inverted)
-            return false;
-        for (int k = 0; k < hits.count; k++) {
-            int way = leaf->is_inverted ? -hits.at[k].change : hits.at[k].change;
-            move_end(way > 0 ? &core->entry : &core->exit, leaf, &hits.at[k], i, way);
-        }
-        bool has_entry = core->entry.child != NO_CONVEX, has_exit = core->exit.child != NO_CONVEX;
-        if ((has_entry && core->entry.lo > far) || (has_exit && core->exit.hi < near))
-            return false;
-        /* Two faces of one solid may be as near to each other as they like. */
-        if (has_entry && has_exit && core->exit.lo <= core->entry.hi &&
-            core->entry.leaf != core->exit.leaf)
+        if (!cut_by_leaf(node, i, ray, core) || is_empty(core, near, far))
             return false;
     }
     return true;
+}
+
+static bool is_packable(const Shape *shape)
+{
+    return shape->is_convex_leaf && shape->kind == SHAPE_PLANE;
+}
+
+void convex_pack_planes(Arena *arena, Shape *node)
+{
+    node->planes = NULL;
+    node->plane_blocks = node->plane_count = 0;
+    for (int i = 0; i < node->child_count; i++)
+        node->plane_count += is_packable(node->children[i]);
+    if (node->kind != SHAPE_INTERSECTION || node->plane_count < 2)
+        return;
+    int blocks = (node->plane_count + BLOCK - 1) / BLOCK, next = 0;
+    PlaneBlock *out = ARENA_ARRAY(arena, PlaneBlock, (size_t)blocks);
+    if (!out)
+        return;
+    int last = 0;
+    for (int i = 0; next < blocks * BLOCK; i++) {
+        if (i < node->child_count && !is_packable(node->children[i]))
+            continue;
+        last = i < node->child_count ? i : last; /* the last plane fills the last block up */
+        const Shape *leaf = node->children[last];
+        double sign = leaf->is_inverted ? -1 : 1;
+        PlaneBlock *block = &out[next / BLOCK];
+        for (int axis = 0; axis < 3; axis++)
+            block->n[axis][next % BLOCK] = sign * v3_at(leaf->u.plane.normal, axis);
+        block->d[next % BLOCK] = sign * leaf->u.plane.distance;
+        block->place[next % BLOCK] = leaf->rounding.place;
+        block->child[next++ % BLOCK] = last;
+    }
+    node->planes = out;
+    node->plane_blocks = blocks;
 }
 
 void convex_push(const ConvexEnd *end, uint32_t slot, ShapeScratch *scratch)

@@ -221,10 +221,6 @@ typedef struct BlockCut {
     double near[BLOCK], far[BLOCK];
 } BlockCut;
 
-typedef double Lanes __attribute__((vector_size(8 * BLOCK)));
-typedef int64_t LaneMask __attribute__((vector_size(8 * BLOCK)));
-#define LANES_PICK(mask, a, b) ((Lanes)(((mask) & (LaneMask)(a)) | (~(mask) & (LaneMask)(b))))
-
 /* As line_cut, for four boxes at once. */
 static void block_cut(const ReachBlock *b, const Line *line, BlockCut *out)
 {

@@ -33,6 +33,7 @@ typedef enum ShapeKind {
 typedef struct Shape Shape;
 typedef struct MeshData MeshData;
 typedef struct ReachBlock ReachBlock;
+typedef struct PlaneBlock PlaneBlock;
 
 /* Forms in object space; Shape.xform takes them to the world.  Spheres, boxes, planes and
  * triangles fold simple transforms into their numbers, so that most have none. */
@@ -107,6 +108,8 @@ struct Shape {
     bool is_inside_beyond; /* what lies outside `reach` is inside the solid */
     Bound reach;           /* around every crossing, visible or not */
     const ReachBlock *reaches; /* of the children, packed; NULL: not made */
+    const PlaneBlock *planes;  /* of an intersection, packed; NULL: not made */
+    int plane_count, plane_blocks;
 };
 
 /* One crossing of a line and a surface. */

@@ -146,11 +146,23 @@ static inline double earlier(double t)
 /* Narrow a line to a box; false when it misses it.  Never says no by rounding. */
 bool line_cut(Line *line, const Bound *box);
 
-/* The reaches of four children, side by side so that they are cut together. */
+/* BLOCK numbers computed with at once. */
 enum { BLOCK = 4 };
+typedef double Lanes __attribute__((vector_size(8 * BLOCK)));
+typedef int64_t LaneMask __attribute__((vector_size(8 * BLOCK)));
+#define LANES_PICK(mask, a, b) ((Lanes)(((mask) & (LaneMask)(a)) | (~(mask) & (LaneMask)(b))))
+
+/* The reaches of four children, side by side so that they are cut together. */
 struct ReachBlock {
     double lo[3][BLOCK], hi[3][BLOCK];
     bool is_inside_beyond[BLOCK];
+};
+
+/* Planes among the children of an intersection, side by side; turned, so that the inside is
+ * n . p < d.  The last ones of the last block repeat. */
+struct PlaneBlock {
+    double n[3][BLOCK], d[BLOCK], place[BLOCK];
+    int child[BLOCK];
 };
 
 /* Return the box that holds every crossing of a shape; *is_inside_beyond: the state of what
@@ -191,6 +203,9 @@ enum { NO_CONVEX = -1 };
 typedef struct ConvexCore {
     ConvexEnd entry, exit;
 } ConvexCore;
+
+/* Pack the planes of an intersection for convex_core. */
+void convex_pack_planes(Arena *arena, Shape *node);
 
 /* Return whether every line is inside the leaf (its inversion applied) along one stretch. */
 bool shape_is_convex_leaf(const Shape *shape);

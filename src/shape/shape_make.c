@@ -284,5 +284,6 @@ void shape_finish(Arena *arena, Shape *shape)
     shape->convex_count = 0;
     for (int i = 0; i < shape->child_count; i++)
         shape->convex_count += shape->children[i]->is_convex_leaf;
+    convex_pack_planes(arena, shape);
     shape->is_finished = true;
 }
