@@ -72,17 +72,13 @@ Status args_load_scene(const Args *args, int index, Scene **out, double *seconds
 /* Fill render options from the command line. */
 Status args_render_options(const Args *args, RenderOptions *out);
 
-/* Write the image to every path of the list by its extension (.exr, .png), applying the
- * scene's working gamma and, for PNG, the OpenColorIO view.  `extra` goes into the header. */
+/* Write the image to every path of the list by its extension (.exr, .png), for PNG
+ * through the OpenColorIO view.  `extra` goes into the header. */
 Status output_write(const Args *args, const Scene *scene, RenderResult *result,
                     const char *const *paths, int path_count);
 
 /* Say early what could not be written later: unknown extensions, missing folders. */
 Status output_preflight(const Args *args, const char *const *paths, int path_count);
-
-/* Bring a rendered image from the scene's working gamma to linear light, in place; the light
- * layers keep adding up to the beauty. */
-void output_linearise(const Scene *scene, Image *image);
 
 /* Print a JSON string with its quotes, or a number (null when it is not finite). */
 void json_string(FILE *file, const char *text);

@@ -14,11 +14,12 @@ static Status write_difference(const Args *args, const Image *a, const Image *b)
     return status;
 }
 
-static Status compare_loaded(const Args *args, const Image *a, const Image *b)
+static Status compare_loaded(const Args *args, Image *a, Image *b)
 {
     Thresholds limits;
     CompareResult result;
     TRY(thresholds_read(args, &limits));
+    TRY(region_apply(args, a, b));
     TRY(image_compare(args->diag, a, b, &result));
     TRY(write_difference(args, a, b));
     if (args_has(args, OPT_JSON)) {

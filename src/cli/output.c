@@ -1,4 +1,4 @@
-/* From a rendered image to files: working gamma, OpenEXR, and PNG through OpenColorIO.
+/* From a rendered image to files: OpenEXR, and PNG through OpenColorIO.
  * SPDX-License-Identifier: Apache-2.0 */
 #include "cli/cli.h"
 
@@ -8,7 +8,6 @@
 #include "image/ocio.h"
 #include "image/png_file.h"
 
-#include <math.h>
 #include <string.h>
 #include <strings.h>
 
@@ -34,49 +33,6 @@ Status output_preflight(const Args *args, const char *const *paths, int path_cou
         out_discard(&out);
     }
     return OK;
-}
-
-/* Inverse of the sRGB curve.  Source: IEC 61966-2-1. */
-static float srgb_decode(float v)
-{
-    return v < 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
-}
-
-static float linear_of(const SceneSettings *settings, float v)
-{
-    if (settings->is_gamma_off)
-        return srgb_decode(v);
-    return powf(fmaxf(v, 0), (float)settings->assumed_gamma);
-}
-
-static bool is_linear(const SceneSettings *settings)
-{
-    return !settings->is_gamma_off && fabs(settings->assumed_gamma - 1) <= 0.01;
-}
-
-/* Each light layer is scaled as the beauty is, channel by channel: they still add up. */
-static void linearise_pixel(const SceneSettings *settings, Image *image, size_t pixel)
-{
-    float *beauty = image->layers[0].pixels + 4 * pixel;
-    for (int c = 0; c < 3; c++) {
-        float linear = linear_of(settings, beauty[c]);
-        float factor = beauty[c] != 0 ? linear / beauty[c] : 1;
-        for (int i = 1; i < image->layer_count; i++) {
-            ImageLayer *layer = &image->layers[i];
-            if (strcmp(layer->channels, "RGB") == 0 && strcmp(layer->name, "albedo") != 0)
-                layer->pixels[3 * pixel + (size_t)c] *= factor;
-        }
-        beauty[c] = linear;
-    }
-}
-
-void output_linearise(const Scene *scene, Image *image)
-{
-    if (is_linear(&scene->settings))
-        return;
-    size_t pixels = (size_t)image->width * (size_t)image->height;
-    for (size_t i = 0; i < pixels; i++)
-        linearise_pixel(&scene->settings, image, i);
 }
 
 enum { META_MAX = 16, META_TEXT = 2048 };
@@ -191,7 +147,6 @@ Status output_write(const Args *args, const Scene *scene, RenderResult *result,
     if (!header)
         return diag_no_memory(args->diag, "the image header");
     header_fill(header, args, scene, result);
-    output_linearise(scene, &result->image);
     for (int i = 0; i < path_count; i++) {
         if (kind_of(paths[i]) == FILE_EXR)
             TRY(exr_write(args->diag, paths[i], &result->image, &header->meta,

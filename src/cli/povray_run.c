@@ -145,27 +145,37 @@ static double children_cpu(void)
            1e-6 * ((double)usage.ru_utime.tv_usec + (double)usage.ru_stime.tv_usec);
 }
 
-/* Pass on the line of the log that names the error. */
+/* Return the part of povray's messages that tells most: from the line that names an error, else
+ * the last lines. */
+static const char *telling_part(const char *text, size_t size)
+{
+    enum { TAIL_BYTES = 300 };
+    const char *part = strstr(text, "Error");
+    if (!part)
+        part = strstr(text, "error");
+    if (!part)
+        part = size > TAIL_BYTES ? text + size - TAIL_BYTES : text;
+    while (part > text && part[-1] != '\n')
+        part--;
+    return part;
+}
+
 static Status report(const Args *args, const char *log, int wait_status)
 {
-    const char *text = "", *line = NULL;
-    size_t size;
-    if (file_exists(log) &&
-        file_read(args->diag, log, LOG_BYTES_MAX, args->arena, &text, &size) == OK)
-        line = strstr(text, "Error");
-    if (!line && text)
-        line = strstr(text, "error");
+    enum { SHOWN_BYTES = 600 };
+    const char *text = "", *part = "";
+    size_t size = 0;
     if (WIFSIGNALED(wait_status))
         return diag_fail(args->diag, ERR_LIBRARY, "povray was ended by signal %d",
                          WTERMSIG(wait_status));
-    while (line && line > text && line[-1] != '\n')
-        line--;
-    /* povray breaks long messages over lines. */
-    int length = line ? (int)strnlen(line, 600) : 0;
-    while (length > 0 && line[length - 1] == '\n')
+    if (file_exists(log) &&
+        file_read(args->diag, log, LOG_BYTES_MAX, args->arena, &text, &size) == OK)
+        part = telling_part(text, size);
+    int length = (int)strnlen(part, SHOWN_BYTES);
+    while (length > 0 && part[length - 1] == '\n')
         length--;
-    return diag_fail(args->diag, ERR_LIBRARY, "povray failed (exit code %d)%s%.*s",
-                     WEXITSTATUS(wait_status), line ? ":\n" : "", length, line ? line : "");
+    return diag_fail(args->diag, ERR_LIBRARY, "povray failed (exit code %d):\n%.*s",
+                     WEXITSTATUS(wait_status), length, part);
 }
 
 static Status run(const Args *args, char *const *words, const char *log, SideRun *out)

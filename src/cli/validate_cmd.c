@@ -107,13 +107,14 @@ static void print_lines(const SideRun *pms, const SideRun *povray, const Compare
                povray->cpu_seconds / pms->cpu_seconds);
 }
 
-static Status compare_sides(const Args *args, const SideRun *pms, const SideRun *povray)
+static Status compare_sides(const Args *args, SideRun *pms, SideRun *povray)
 {
     Thresholds limits;
     CompareResult result;
     double gain;
     TRY(thresholds_read(args, &limits));
     TRY(args_number(args, OPT_GAIN, 0, 1e6, 4, &gain));
+    TRY(region_apply(args, &pms->image, &povray->image));
     TRY(image_compare(args->diag, &pms->image, &povray->image, &result));
     if (args->output_count)
         TRY(write_side_by_side(args, pms, povray, gain));
@@ -163,9 +164,13 @@ static Status validate(Args *args, int argc, char **argv)
         return diag_fail(args->diag, ERR_USAGE, "pms validate wants one scene file, got %d",
                          args->operand_count);
     /* povray is allowed to write in few places; /tmp is one of them. */
-    char folder[] = "/tmp/pms-validate-XXXXXX";
-    if (!mkdtemp(folder))
-        return diag_fail(args->diag, ERR_FILE, "cannot make a folder in /tmp");
+    const char *temp = getenv("TMPDIR");
+    char folder[FILE_PATH_MAX / 2];
+    int length =
+        snprintf(folder, sizeof folder, "%s/pms-validate-XXXXXX", temp && *temp ? temp : "/tmp");
+    if (length >= (int)sizeof folder || !mkdtemp(folder))
+        return diag_fail(args->diag, ERR_FILE, "cannot make a temporary folder in '%.200s'",
+                         temp && *temp ? temp : "/tmp");
     Status status = validate_in(args, folder);
     remove_folder(folder);
     return status;

@@ -19,6 +19,27 @@ Status thresholds_read(const Args *args, Thresholds *out)
     return args_number(args, OPT_MIN_SSIM, -1, 1, NAN, &out->min_ssim);
 }
 
+static bool is_inside(const int r[4], const Image *image)
+{
+    return r[0] >= 0 && r[1] >= 0 && r[2] >= 1 && r[3] >= 1 && r[0] < image->width &&
+           r[1] < image->height && r[2] <= image->width - r[0] && r[3] <= image->height - r[1];
+}
+
+Status region_apply(const Args *args, Image *a, Image *b)
+{
+    const char *text = args->value[OPT_REGION];
+    int r[4], length = 0;
+    if (!text)
+        return OK;
+    if (sscanf(text, "%d,%d,%d,%d%n", &r[0], &r[1], &r[2], &r[3], &length) != 4 || text[length])
+        return diag_fail(args->diag, ERR_USAGE, "--region wants X,Y,W,H, got '%s'", text);
+    if (!is_inside(r, a) || !is_inside(r, b))
+        return diag_fail(args->diag, ERR_USAGE, "the region %s does not lie in the images", text);
+    image_crop(a, r[0], r[1], r[2], r[3]);
+    image_crop(b, r[0], r[1], r[2], r[3]);
+    return OK;
+}
+
 static Status check_most(Diag *diag, const char *name, double found, double limit)
 {
     if (isnan(limit) || found <= limit)
@@ -60,6 +81,7 @@ void metrics_print(FILE *file, const CompareResult *r)
     fprintf(file, "ssim     %.6f\n", r->ssim);
     fprintf(file, "max      %.6g\n", r->max_error);
     fprintf(file, "means    %.6g %.6g\n", r->mean_a, r->mean_b);
+    fprintf(file, "light    %.6g %.6g\n", r->light_a, r->light_b);
     if (r->bad_a + r->bad_b > 0)
         fprintf(file, "not numbers: %zu and %zu pixels, left out\n", r->bad_a, r->bad_b);
 }
@@ -72,7 +94,8 @@ void metrics_print_json(FILE *file, const CompareResult *r)
     } items[] = {{"rmse", r->rmse},           {"relmse", r->rel_mse},
                  {"psnr", r->psnr},           {"ssim", r->ssim},
                  {"max", r->max_error},       {"mean_a", r->mean_a},
-                 {"mean_b", r->mean_b},       {"bad_a", (double)r->bad_a},
+                 {"mean_b", r->mean_b},       {"light_a", r->light_a},
+                 {"light_b", r->light_b},     {"bad_a", (double)r->bad_a},
                  {"bad_b", (double)r->bad_b}, {"relmse_epsilon", COMPARE_REL_EPSILON}};
     fprintf(file, "\"space\": \"%s\"", r->is_display ? "display" : "linear");
     for (size_t i = 0; i < sizeof items / sizeof *items; i++) {

@@ -14,6 +14,9 @@ typedef struct Thresholds {
 /* Read --max-rmse and its kin. */
 Status thresholds_read(const Args *args, Thresholds *out);
 
+/* Cut both images to --region, if it was given.  ERR_USAGE if it does not lie in them. */
+Status region_apply(const Args *args, Image *a, Image *b);
+
 /* Return ERR_COMPARE, after saying which, if a metric is past its bound; an image with pixels
  * that are no numbers fails any bound. */
 Status thresholds_check(Diag *diag, const Thresholds *limits, const CompareResult *result);

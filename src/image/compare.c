@@ -87,9 +87,14 @@ static bool is_finite_pixel(const float *rgb)
     return isfinite(rgb[0]) && isfinite(rgb[1]) && isfinite(rgb[2]);
 }
 
+static double light_of(float v, bool is_display)
+{
+    return (double)(is_display ? srgb_decode(v) : v);
+}
+
 static void sum_errors(const float *a, const float *b, size_t pixels, CompareResult *out)
 {
-    double squares = 0, relative = 0, mean_a = 0, mean_b = 0;
+    double squares = 0, relative = 0, mean_a = 0, mean_b = 0, light_a = 0, light_b = 0;
     size_t used = 0;
     for (size_t i = 0; i < pixels; i++, a += 3, b += 3) {
         bool is_good_a = is_finite_pixel(a), is_good_b = is_finite_pixel(b);
@@ -105,6 +110,8 @@ static void sum_errors(const float *a, const float *b, size_t pixels, CompareRes
             out->max_error = fmax(out->max_error, fabs(d));
             mean_a += va;
             mean_b += vb;
+            light_a += light_of(a[c], out->is_display);
+            light_b += light_of(b[c], out->is_display);
         }
     }
     double scale = used ? 1 / (double)used : 0;
@@ -113,6 +120,8 @@ static void sum_errors(const float *a, const float *b, size_t pixels, CompareRes
     out->psnr = squares > 0 ? -10 * log10(squares * scale) : INFINITY;
     out->mean_a = mean_a * scale;
     out->mean_b = mean_b * scale;
+    out->light_a = light_a * scale;
+    out->light_b = light_b * scale;
 }
 
 /* Return the display-encoded luma of each pixel; what cannot be compared is black in both. */

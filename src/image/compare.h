@@ -11,6 +11,7 @@ typedef struct CompareResult {
     double ssim;      /* mean structural similarity of luma, display-encoded; Wang et al. 2004 */
     double max_error; /* largest difference of a channel */
     double mean_a, mean_b;
+    double light_a, light_b; /* mean linear light, display values decoded */
     size_t bad_a, bad_b; /* pixels with a NaN or infinity: left out of the sums, black in SSIM */
     bool is_display;     /* what was compared: display values, or (both images linear) light */
 } CompareResult;

@@ -51,6 +51,23 @@ int image_channel(const ImageLayer *layer, char letter)
     return found ? (int)(found - layer->channels) : -1;
 }
 
+void image_crop(Image *image, int x, int y, int width, int height)
+{
+    assert(x >= 0 && y >= 0 && width >= 1 && height >= 1);
+    assert(width <= image->width - x && height <= image->height - y);
+    for (int i = 0; i < image->layer_count; i++) {
+        size_t count = (size_t)image->layers[i].channel_count;
+        float *pixels = image->layers[i].pixels;
+        for (size_t row = 0; row < (size_t)height; row++) {
+            size_t from = ((size_t)y + row) * (size_t)image->width + (size_t)x;
+            memmove(pixels + row * (size_t)width * count, pixels + from * count,
+                    (size_t)width * count * sizeof *pixels);
+        }
+    }
+    image->width = width;
+    image->height = height;
+}
+
 void image_done(Image *image)
 {
     for (int i = 0; i < image->layer_count; i++)

@@ -35,6 +35,9 @@ ImageLayer *image_find_layer(const Image *image, const char *name);
 /* Return the position of `letter` in the layer's channels, or -1. */
 int image_channel(const ImageLayer *layer, char letter);
 
+/* Cut every layer to the rectangle at (x, y), which lies inside the image, in place. */
+void image_crop(Image *image, int x, int y, int width, int height);
+
 void image_done(Image *image);
 
 /* Text fields that go into a file's header. */

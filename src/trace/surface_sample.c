@@ -113,6 +113,14 @@ static void sample_reflection(Sampling *s, SurfaceLayer *layer, float weight, Rg
     layer->reflect = rgb_scale(r, weight);
 }
 
+/* How much of a layer's own light is seen.  Before 3.7 the language weighed filter with the
+ * strongest channel. */
+static float opacity_of(const SceneSettings *settings, Color5 c)
+{
+    float filter = settings->version < 3.7 ? c.filter * rgb_max(color5_rgb(c)) : c.filter;
+    return 1 - filter - c.transmit;
+}
+
 /* Append the layers of one texture, seen through `above`; returns what passes them too. */
 static Rgb sample_texture(Sampling *s, const Texture *texture, float weight, Rgb above)
 {
@@ -125,7 +133,7 @@ static Rgb sample_texture(Sampling *s, const Texture *texture, float weight, Rgb
         SurfaceLayer *layer = &out->layers[out->layer_count++];
         Color5 color = pigment_at(texture->layers[i].pigment, out->at.p);
         layer->color = color5_rgb(color);
-        layer->opacity = 1 - color.filter - color.transmit;
+        layer->opacity = opacity_of(out->settings, color);
         layer->above = rgb_scale(filter, weight);
         layer->finish = texture->layers[i].finish;
         layer->n = s->n;

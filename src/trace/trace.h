@@ -90,7 +90,7 @@ void interiors_at(const Tracer *tracer, V3 p, Interiors *out);
  * man/pms.5. */
 typedef struct SurfaceLayer {
     Rgb color;     /* pigment */
-    float opacity; /* 1 - filter - transmit, may be negative */
+    float opacity; /* 1 - filter - transmit (before 3.7 otherwise), may be negative */
     Rgb above;     /* what reaches this layer through the ones above */
     const Finish *finish;
     V3 n;           /* unit, on the side of ng, faces the viewer */

@@ -83,6 +83,7 @@ static void constant_images_have_known_metrics(void **state)
     assert_near(r.psnr, -20 * log10(0.25), 1e-9);
     assert_near(r.max_error, 0.25, 1e-9);
     assert_near(r.mean_a, 0.5, 1e-9);
+    assert_near(r.light_a, 0.5, 1e-9);
     /* of constants only the luminance term is left */
     double la = (double)srgb_encode(0.5f), lb = (double)srgb_encode(0.25f), c1 = 1e-4;
     assert_near(r.ssim, (2 * la * lb + c1) / (la * la + lb * lb + c1), 1e-5);
@@ -163,6 +164,8 @@ static void light_meets_display(void **state)
     CompareResult r = compare(&light, &display);
     assert_true(r.is_display);
     assert_true(r.rmse < 1e-7);
+    assert_near(r.light_a, r.light_b, 1e-6);
+    assert_true(r.light_a < r.mean_a);
     assert_near(compare(&display, &light).ssim, 1, 1e-6);
     /* half-transparent display colours lie over black */
     for (int i = 0; i < 12 * 12; i++) {

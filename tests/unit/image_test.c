@@ -40,6 +40,22 @@ static void channels_have_places(void **state)
     image_done(&image);
 }
 
+static void cropping_keeps_the_rectangle(void **state)
+{
+    (void)state;
+    Image image;
+    image_init(&image, 4, 3);
+    ImageLayer *layer = image_add_layer(&image, "", "RG");
+    for (int i = 0; i < 24; i++)
+        layer->pixels[i] = (float)i;
+    image_crop(&image, 1, 1, 2, 2);
+    assert_int_equal(image.width, 2);
+    assert_int_equal(image.height, 2);
+    static const float wanted[8] = {10, 11, 12, 13, 18, 19, 20, 21};
+    assert_memory_equal(layer->pixels, wanted, sizeof wanted);
+    image_done(&image);
+}
+
 static void memory_that_is_out_leaves_an_image_whole(void **state)
 {
     (void)state;
@@ -61,6 +77,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(layers_are_zeroed_and_found),
         cmocka_unit_test(channels_have_places),
+        cmocka_unit_test(cropping_keeps_the_rectangle),
         cmocka_unit_test(memory_that_is_out_leaves_an_image_whole),
     };
     return cmocka_run_group_tests_name("image", tests, NULL, NULL);

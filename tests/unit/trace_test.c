@@ -132,6 +132,24 @@ static void test_layers(void **state)
     world_done(&w);
 }
 
+/* Filter weighs with the strongest channel before 3.7: 1 - 0.8 * 0.9 instead of 1 - 0.8. */
+static void test_opacity_of_old_versions(void **state)
+{
+    (void)state;
+    World w;
+    world_init(&w);
+    Finish finish = dull;
+    finish.ambient = rgb_gray(0.5f);
+    const Texture *filter = flat(&w, (Color5){0.6f, 0.9f, 0.7f, 0.8f, 0}, &finish);
+    world_add(&w, box(&w, v3(-9, -9, 0), v3(9, 9, 1)), filter, &air);
+    world_ready(&w);
+    w.scene.settings.max_trace_level = 1;
+    check_rgb(look(&w), 0.06, 0.09, 0.07);
+    w.scene.settings.version = 3.5;
+    check_rgb(look(&w), 0.084, 0.126, 0.098);
+    world_done(&w);
+}
+
 /* --- transmission -------------------------------------------------------------------------- */
 
 static const Texture *fresnel_glass(World *w, bool conserves_energy)
@@ -847,6 +865,7 @@ int main(void)
         cmocka_unit_test(test_iridescent_reflection),
         cmocka_unit_test(test_mirror_under_a_layer),
         cmocka_unit_test(test_layers),
+        cmocka_unit_test(test_opacity_of_old_versions),
         cmocka_unit_test(test_fresnel_slabs),
         cmocka_unit_test(test_total_reflection),
         cmocka_unit_test(test_tilted_slab_displaces),

@@ -29,6 +29,7 @@ static inline void world_init(World *w)
     w->scene.lights = w->lights;
     w->scene.light_count = 2;
     w->lights[0].is_parallel = w->lights[1].is_parallel = true; /* rays to it go anywhere */
+    w->scene.settings.version = 3.7;
     w->scene.settings.adc_bailout = 1 / 255.0;
     w->scene.settings.max_trace_level = 5;
     w->scene.settings.irid_wavelength = rgb(0.70f, 0.52f, 0.48f);

@@ -1,0 +1,8 @@
+// Light gathered by a thin lens that stands askew.
+// caustic: the picture is the receiver
+#version 3.7;
+global_settings { assumed_gamma 1 max_trace_level 10 photons { count 200000 } }
+camera { orthographic location <0, .5, 0> direction -y right 6.4 * x up 4.8 * z }
+plane { y, 0 pigment { rgb .35 } finish { ambient 0 diffuse 1 } }
+light_source { <12, 40, 5>, .4 photons { refraction on reflection off } }
+intersection { sphere { <0, 4.2, 0>, 2.6 } sphere { <0, .4, 0>, 2.6 } rotate 10 * z photons { target reflection off refraction on } pigment { rgbf 1 } finish { ambient 0 diffuse 0 } interior { ior 1.5 } }

@@ -1,0 +1,8 @@
+// Light through a ball of water with absorption.
+// caustic: the picture is the receiver
+#version 3.7;
+global_settings { assumed_gamma 1 max_trace_level 10 photons { count 200000 } }
+camera { orthographic location <0, .5, 0> direction -y right 6.4 * x up 4.8 * z }
+plane { y, 0 pigment { rgb .35 } finish { ambient 0 diffuse 1 } }
+light_source { <-10, 40, 6>, .4 photons { refraction on reflection off } }
+sphere { <0, 1.8, 0>, 1.2 photons { target reflection off refraction on } pigment { rgbf 1 } finish { ambient 0 diffuse 0 } interior { ior 1.33 fade_distance 1 fade_power 1001 fade_color <.3, .6, .9> } }
