@@ -17,6 +17,7 @@ typedef struct Beam {
     V3 center;            /* of a ball around the target, scene units */
     double radius;
     double spacing_factor; /* the target's */
+    double stores; /* photons expected to be stored for two that are sent */
     int side;              /* cells a side */
     float *cumulative;     /* of the weights of cells, row by row; side * side, ends with 1 */
     uint16_t guide[BEAM_GUIDES + 1]; /* the cell in which each part of the weight begins */

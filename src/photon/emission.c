@@ -45,15 +45,34 @@ static bool add_beam(Emission *emission, size_t *capacity, const Beam *beam)
     return is_done;
 }
 
-/* The spacing factor of the first target surface of an object. */
-static double spacing_factor(const Scene *scene, uint32_t object)
+/* Return the first target surface of an object; NULL: it has none. */
+static const Surface *target_surface(const Scene *scene, uint32_t object)
 {
-    for (uint32_t i = 0; i < scene->surface_count; i++) {
-        const Surface *surface = &scene->surfaces[i];
-        if (surface->object == object && surface->is_target && surface->photons.spacing_factor > 0)
-            return (double)surface->photons.spacing_factor;
-    }
-    return 1;
+    for (uint32_t i = 0; i < scene->surface_count; i++)
+        if (scene->surfaces[i].object == object && scene->surfaces[i].is_target)
+            return &scene->surfaces[i];
+    return NULL;
+}
+
+/* Set what the target's photons{} says of the beam.  `stores` is how many photons the language
+ * expects to be stored for two that are sent (measured with POV-Ray: targets that collect
+ * store photons themselves, those that reflect and refract split them). */
+static void set_target(Beam *beam, const Scene *scene, uint32_t object)
+{
+    const Surface *surface = target_surface(scene, object);
+    beam->target = &scene->objects[object];
+    beam->center = bound_center(beam->target->bound);
+    beam->radius = bound_radius(beam->target->bound);
+    beam->spacing_factor = beam->stores = 1;
+    if (!surface)
+        return;
+    if (surface->photons.spacing_factor > 0)
+        beam->spacing_factor = (double)surface->photons.spacing_factor;
+    bool refracts = plan_photons_refract(beam->light, surface);
+    bool is_both = refracts && plan_photons_reflect(beam->light, surface);
+    if (refracts && surface->photons.is_collecting)
+        beam->stores = is_both ? 3 : 2;
+    beam->stores *= is_both ? 1.5 : 1;
 }
 
 static bool add_target_beams(Emission *emission, size_t *capacity, Beam beam)
@@ -64,10 +83,7 @@ static bool add_target_beams(Emission *emission, size_t *capacity, Beam beam)
         if (!object->is_target || object->no_image || !bound_is_finite(object->bound) ||
             bound_is_empty(object->bound))
             continue;
-        beam.target = object;
-        beam.center = bound_center(object->bound);
-        beam.radius = bound_radius(object->bound);
-        beam.spacing_factor = spacing_factor(scene, i);
+        set_target(&beam, scene, i);
         if (!add_beam(emission, capacity, &beam))
             return false;
     }
@@ -144,16 +160,33 @@ static double spaced_photons(const Beam *beam, double spacing)
     return middle.measure / (step * step);
 }
 
-static double photons_from_spacing(const Emission *emission, bool is_after_pilot)
+static double photons_from_spacing(const Emission *emission, double spacing, bool is_after_pilot)
 {
-    const Scene *scene = tracer_scene(emission->tracer);
     double sum = 0;
     for (int i = 0; i < emission->beam_count; i++) {
         const Beam *beam = &emission->beams[i];
-        double photons = spaced_photons(beam, scene->settings.photons.spacing);
+        double photons = spaced_photons(beam, spacing);
         sum += is_after_pilot ? photons * (beam->flux > 0 ? beam->covered : 0) : photons;
     }
     return sum;
+}
+
+/* Of the photons the language sends at the ball around a target, the part that its autostop
+ * leaves, at a guess: a ball covers a third of the ball around its box, a box up to two. */
+#define COUNT_FILL 0.5
+
+/* Return how many photons to send for the `count` of photons{}: it is the number the language
+ * expects to be stored, one or more for each one sent. */
+static double photons_from_count(const Emission *emission, double count)
+{
+    double sent = 0, stored = 0; /* at one photon a square unit */
+    for (int i = 0; i < emission->beam_count; i++) {
+        const Beam *beam = &emission->beams[i];
+        double across = beam->radius / beam->spacing_factor;
+        sent += PMS_PI * across * across;
+        stored += PMS_PI * across * across * beam->stores / 2;
+    }
+    return ceil(COUNT_FILL * count * sent / stored);
 }
 
 /* Return how many photons to send, or guess it before the pilot. */
@@ -164,15 +197,16 @@ static double photons_wanted(const Emission *emission, bool is_after_pilot)
     if (emission->rules.map == MAP_GLOBAL)
         return (double)plan->global_photons;
     if (plan->caustic_photons > 0)
-        return (double)plan->caustic_photons;
-    double wanted = photons_from_spacing(emission, is_after_pilot);
+        return photons_from_count(emission, (double)plan->caustic_photons);
+    double spacing = scene->settings.photons.spacing;
+    double wanted = photons_from_spacing(emission, spacing, is_after_pilot);
     if (!(wanted <= SPACING_PHOTONS_MAX)) {
         if (is_after_pilot)
             diag_warn(
                 emission->diag, WARN_RENDER, scene->settings.photons.span,
                 "spacing %g asks for %.3g photons: %.0f are sent; photons{count} sets another "
                 "number",
-                scene->settings.photons.spacing, wanted, SPACING_PHOTONS_MAX);
+                spacing, wanted, SPACING_PHOTONS_MAX);
         wanted = SPACING_PHOTONS_MAX;
     }
     return wanted;
