@@ -155,7 +155,7 @@ static float best_around(const float *found, int side, int x, int y)
 
 void beam_set_cells(Beam *beam, const float *found)
 {
-    int side = beam->side, cells = side * side, covered = 0;
+    int side = beam->side, cells = side * side;
     float most = 0;
     for (int i = 0; i < cells; i++)
         most = fmaxf(most, found[i]);
@@ -166,7 +166,6 @@ void beam_set_cells(Beam *beam, const float *found)
             float best = fmaxf(found[i], NEIGHBOUR_PART * around);
             double weight = most > 0 ? fmax(CELL_FLOOR, (double)(best / most)) : 1;
             if (pass == 0) {
-                covered += best > 0;
                 total += weight;
             } else {
                 sum += weight;
@@ -174,7 +173,7 @@ void beam_set_cells(Beam *beam, const float *found)
             }
         }
     beam->cumulative[cells - 1] = 1;
-    beam->covered = (double)covered / cells;
+    beam->filled = total / cells;
     for (int g = 0, cell = 0; g <= BEAM_GUIDES; g++) {
         while (cell < cells - 1 && beam->cumulative[cell] <= (float)g / BEAM_GUIDES)
             cell++;

@@ -17,13 +17,13 @@ typedef struct Beam {
     V3 center;            /* of a ball around the target, scene units */
     double radius;
     double spacing_factor; /* the target's */
-    double stores; /* photons expected to be stored for two that are sent */
+    double stores;         /* photons expected to be stored for two that are sent */
     int side;              /* cells a side */
     float *cumulative;     /* of the weights of cells, row by row; side * side, ends with 1 */
     uint16_t guide[BEAM_GUIDES + 1]; /* the cell in which each part of the weight begins */
     uint64_t square_key, area_key, choice_key; /* of its sequences of points */
     double flux;     /* onto the target, summed RGB, estimated by a pilot */
-    double covered;  /* part of the square whose cells were found to matter */
+    double filled;   /* mean weight of the cells over that of the best */
     uint64_t budget; /* photons to send */
 } Beam;
 

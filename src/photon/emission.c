@@ -12,8 +12,8 @@
 /* Random numbers, by map: of photons, and of the keys of their points. */
 enum { PASS_PHOTON = 0x700, PASS_KEYS = 0x720 };
 
-/* Most photons a spacing may ask for. */
-#define SPACING_PHOTONS_MAX 1e8
+/* Most photons that may be asked for. */
+#define SPACED_PHOTONS_MAX 1e8
 
 /* In a scene with endless objects, first diffuse hits of photons for the global map further from
  * the middle than this many radii of its bounded part are cut: an endless plane lit by a light
@@ -80,8 +80,8 @@ static bool add_target_beams(Emission *emission, size_t *capacity, Beam beam)
     const Scene *scene = tracer_scene(emission->tracer);
     for (uint32_t i = 0; i < scene->object_count; i++) {
         const Object *object = &scene->objects[i];
-        if (!object->is_target || object->no_image || !bound_is_finite(object->bound) ||
-            bound_is_empty(object->bound))
+        if (!object->is_target || object->no_image || object->no_shadow ||
+            !bound_is_finite(object->bound) || bound_is_empty(object->bound))
             continue;
         set_target(&beam, scene, i);
         if (!add_beam(emission, capacity, &beam))
@@ -160,56 +160,42 @@ static double spaced_photons(const Beam *beam, double spacing)
     return middle.measure / (step * step);
 }
 
-static double photons_from_spacing(const Emission *emission, double spacing, bool is_after_pilot)
+/* Return the distance between photons at their targets: as written, or such that the language
+ * would expect the number that was to be stored (if half the disk across the ball around a target
+ * were target). */
+static double photon_spacing(const Emission *emission)
 {
-    double sum = 0;
-    for (int i = 0; i < emission->beam_count; i++) {
-        const Beam *beam = &emission->beams[i];
-        double photons = spaced_photons(beam, spacing);
-        sum += is_after_pilot ? photons * (beam->flux > 0 ? beam->covered : 0) : photons;
-    }
-    return sum;
-}
-
-/* Of the photons the language sends at the ball around a target, the part that its autostop
- * leaves, at a guess: a ball covers a third of the ball around its box, a box up to two. */
-#define COUNT_FILL 0.5
-
-/* Return how many photons to send for the `count` of photons{}: it is the number the language
- * expects to be stored, one or more for each one sent. */
-static double photons_from_count(const Emission *emission, double count)
-{
-    double sent = 0, stored = 0; /* at one photon a square unit */
+    const Scene *scene = tracer_scene(emission->tracer);
+    long count = tracer_plan(emission->tracer)->caustic_photons;
+    double estimate = 0;
+    if (count <= 0)
+        return scene->settings.photons.spacing;
     for (int i = 0; i < emission->beam_count; i++) {
         const Beam *beam = &emission->beams[i];
         double across = beam->radius / beam->spacing_factor;
-        sent += PMS_PI * across * across;
-        stored += PMS_PI * across * across * beam->stores / 2;
+        estimate += PMS_PI * across * across * beam->stores / 2;
     }
-    return ceil(COUNT_FILL * count * sent / stored);
+    return sqrt(estimate / (double)count);
 }
 
-/* Return how many photons to send, or guess it before the pilot. */
+/* Return how many photons to send, or, before the pilot, at most. */
 static double photons_wanted(const Emission *emission, bool is_after_pilot)
 {
-    const Plan *plan = tracer_plan(emission->tracer);
-    const Scene *scene = tracer_scene(emission->tracer);
     if (emission->rules.map == MAP_GLOBAL)
-        return (double)plan->global_photons;
-    if (plan->caustic_photons > 0)
-        return photons_from_count(emission, (double)plan->caustic_photons);
-    double spacing = scene->settings.photons.spacing;
-    double wanted = photons_from_spacing(emission, spacing, is_after_pilot);
-    if (!(wanted <= SPACING_PHOTONS_MAX)) {
-        if (is_after_pilot)
-            diag_warn(
-                emission->diag, WARN_RENDER, scene->settings.photons.span,
-                "spacing %g asks for %.3g photons: %.0f are sent; photons{count} sets another "
-                "number",
-                spacing, wanted, SPACING_PHOTONS_MAX);
-        wanted = SPACING_PHOTONS_MAX;
+        return (double)tracer_plan(emission->tracer)->global_photons;
+    double spacing = photon_spacing(emission), wanted = 0;
+    for (int i = 0; i < emission->beam_count; i++) {
+        const Beam *beam = &emission->beams[i];
+        double photons = spaced_photons(beam, spacing);
+        wanted += is_after_pilot ? photons * (beam->flux > 0 ? beam->filled : 0) : photons;
     }
-    return wanted;
+    if (wanted <= SPACED_PHOTONS_MAX)
+        return ceil(wanted);
+    if (is_after_pilot)
+        diag_warn(
+            emission->diag, WARN_RENDER, tracer_scene(emission->tracer)->settings.photons.span,
+            "spacing %g asks for %.3g photons: %.0f are sent", spacing, wanted, SPACED_PHOTONS_MAX);
+    return SPACED_PHOTONS_MAX;
 }
 
 static Status share_beams(Emission *emission, int light, uint64_t total)

@@ -33,7 +33,8 @@ Status trace_thread_init(TraceThread *thread, const Tracer *tracer, Diag *diag);
 void trace_thread_done(TraceThread *thread);
 
 /* Camera, refracted and photon rays do not see no_image objects, reflected ones do not see
- * no_reflection objects.  What follows a reflected ray through glass is a reflected ray. */
+ * no_reflection objects, photons do not see no_shadow objects either.  What follows a reflected ray
+ * through glass is a reflected ray. */
 typedef enum RayKind {
     RAY_CAMERA,
     RAY_REFLECTED,

@@ -96,7 +96,7 @@ static void describe_object(Tracer *tracer, uint32_t i)
     set_ball(object, out);
     out->is_hidden[RAY_CAMERA] = object->no_image;
     out->is_hidden[RAY_REFRACTED] = object->no_image;
-    out->is_hidden[RAY_PHOTON] = object->no_image;
+    out->is_hidden[RAY_PHOTON] = object->no_image || object->no_shadow;
     out->is_hidden[RAY_REFLECTED] = object->no_reflection;
     if (object->no_shadow)
         out->shadow = SHADOW_NONE;

@@ -58,10 +58,9 @@ static void books_balance(void **state)
     lit_make(&lit, busy_scene, 2, 1);
     const PhotonBooks *books = &lit.maps.books;
     assert_int_equal(books->light_count, 5);
-    uint64_t caustic = check_books(books->caustic, 5), global = check_books(books->global, 5);
-    assert_int_equal(global, 30000);
-    /* Targets that collect, and split photons, store more of them than are sent. */
-    assert_true(caustic > 30000 / 9 && caustic < 30000 / 2);
+    uint64_t sent = check_books(books->caustic, 5);
+    assert_true(sent > 10000 && sent < 40000); /* as many as the language makes of count 30000 */
+    assert_int_equal(check_books(books->global, 5), 30000);
     uint64_t stored[2] = {0};
     double share = 0;
     for (int i = 0; i < 5; i++) {
@@ -76,13 +75,13 @@ static void books_balance(void **state)
     assert_true(stored[0] == photon_map_count(lit.maps.caustic));
     assert_true(stored[1] == photon_map_count(lit.maps.global));
     const uint64_t *count = lit.stats.count;
-    assert_true(count[STAT_PHOTONS_EMITTED] == caustic + global);
+    assert_true(count[STAT_PHOTONS_EMITTED] == sent + 30000);
     assert_true(count[STAT_PHOTONS_CAUSTIC] == stored[0]);
     assert_true(count[STAT_PHOTONS_GLOBAL] == stored[1]);
     assert_true(count[STAT_PHOTONS_EMITTED] ==
                 count[STAT_PHOTONS_STORED_PATHS] + count[STAT_PHOTONS_ABSORBED] +
                     count[STAT_PHOTONS_ESCAPED] + count[STAT_PHOTONS_CUT]);
-    assert_true(count[STAT_PHOTON_RAYS] > caustic + global);
+    assert_true(count[STAT_PHOTON_RAYS] > sent + 30000);
     assert_true(lit.maps.caustic_radius > 0 && lit.maps.global_radius > 0);
     lit_done(&lit);
 }
@@ -123,7 +122,7 @@ static void powers_are_alike(void **state)
                              "sphere { <0,1.5,0>, 1 " GLASS " photons { target refraction on } }\n",
              1, 1);
     const LightBooks *b = lit.maps.books.caustic;
-    assert_true(b[0].budget + b[1].budget == 20000);
+    assert_true(b[0].budget + b[1].budget > 10000);
     double ratio = b[0].power / b[1].power;
     assert_true(fabs((double)b[0].budget / (double)b[1].budget / ratio - 1) < 0.001);
     /* nearer by 36/40: 9 times the colour is 10 times the flux */
@@ -148,8 +147,9 @@ static void share_can_be_overridden(void **state)
     PhotonBooks books;
     assert_int_equal(photon_plan_budgets(lit.tracer, &lit.options, &lit.diag, &books), OK);
     assert_int_equal(books.caustic[0].emitted, 0);
-    assert_true(fabs((double)books.caustic[0].budget - 3750) < 30); /* the pilot's error */
-    assert_int_equal(books.caustic[0].budget + books.caustic[1].budget, 5000);
+    double sent = (double)(books.caustic[0].budget + books.caustic[1].budget);
+    assert_true(fabs((double)books.caustic[0].budget / sent - 0.75) < 0.01); /* the pilot's error */
+    assert_true(fabs(books.caustic[0].share - 0.75) < 0.01);
     photon_books_done(&books);
     lit_done(&lit);
 }
@@ -228,6 +228,30 @@ static void flags_mean_what_they_say(void **state)
     assert_true(fabs(flux / (4 * 0.25) - 1) < 0.02);
 }
 
+/* Photons do not see what is not in the picture or casts no shadow, as measured in povray. */
+static void hidden_objects(void **state)
+{
+    (void)state;
+    const char *const flags[] = {"no_shadow", "no_image"};
+    for (int i = 0; i < 2; i++) {
+        char text[1024];
+        uint64_t n;
+        snprintf(text, sizeof text,
+                 SETTINGS(5000) SUN FLOOR BOX_AT(0) GLASS
+                 " photons { target refraction on } }\n"
+                 "box { <-3,5,-3>, <5,5.1,3> pigment { rgb 1 } %s }\n",
+                 flags[i]);
+        double flux = stored_flux(text, NULL);
+        assert_true(fabs(flux / 4 - 1) < 0.03);
+        snprintf(text, sizeof text,
+                 SETTINGS(5000) SUN FLOOR BOX_AT(0) GLASS
+                 " photons { target refraction on } %s }\n",
+                 flags[i]);
+        stored_flux(text, &n);
+        assert_int_equal(n, 0);
+    }
+}
+
 /* The diffuse surface itself, lit directly, keeps nothing: no specular bounce, no caustic. */
 static void direct_light_is_not_in_the_map(void **state)
 {
@@ -267,12 +291,13 @@ static void every_light_emits(void **state)
     for (size_t i = 0; i < sizeof lights / sizeof lights[0]; i++) {
         char text[1024];
         snprintf(text, sizeof text,
-                 SETTINGS(5000) "%s\n" FLOOR "sphere { <0,1.5,0>, 1 " GLASS
-                                " photons { target refraction on collect off } }\n",
+                 SETTINGS(20000) "%s\n" FLOOR "sphere { <0,1.5,0>, 1 " GLASS
+                                 " photons { target refraction on collect off } }\n",
                  lights[i]);
         LitScene lit;
         lit_make(&lit, text, 2, 1);
         assert_non_null(lit.maps.caustic);
+        print_message("# light %zu: %zu\n", i, photon_map_count(lit.maps.caustic));
         assert_true(photon_map_count(lit.maps.caustic) > 1000);
         for (size_t k = 0; k < photon_map_count(lit.maps.caustic); k++) {
             Photon photon = photon_map_at(lit.maps.caustic, k);
@@ -326,7 +351,9 @@ static void nothing_to_hit(void **state)
              1, 1); /* all of it leaves the scene */
     assert_null(lit.maps.caustic);
     assert_non_null(strstr(lit.messages, "no photon was stored"));
-    assert_int_equal(lit.maps.books.caustic[0].escaped + lit.maps.books.caustic[0].cut, 1000);
+    const LightBooks *books = &lit.maps.books.caustic[0];
+    assert_true(books->emitted > 500 && books->escaped > books->emitted / 3);
+    assert_true(books->escaped + books->cut == books->emitted);
     lit_done(&lit);
 }
 
@@ -352,28 +379,32 @@ static void small_targets_are_found(void **state)
     lit_done(&lit);
 }
 
-/* count is what the language expects to be stored, so fewer are sent to targets that store or
- * split (POV-Ray's ratios: 2 without storing, 1 with, 1/2.25 when they split too), and half of
- * that, as none is sent beside a target. */
+/* count is what the language expects to be stored, so fewer are sent at targets that store or
+ * split (POV-Ray's ratios), and they are as dense as the language's: two for each of count over
+ * the disk across the ball around the target, none beside the target but for the rim. */
 static void count_means_stored(void **state)
 {
     (void)state;
     static const struct {
         const char *flags;
-        uint64_t sent;
-    } cases[] = {{"refraction on collect off", 10000},
-                 {"refraction on", 5000},
-                 {"refraction on reflection on collect off", 6667},
-                 {"refraction on reflection on", 2223}};
+        double stores;
+    } cases[] = {{"refraction on collect off", 1},
+                 {"refraction on", 2},
+                 {"refraction on reflection on collect off", 1.5},
+                 {"refraction on reflection on", 4.5}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[1024];
         snprintf(text, sizeof text,
-                 SETTINGS(10000) SUN FLOOR BOX_AT(0) GLASS
+                 SETTINGS(100000) SUN FLOOR BOX_AT(0) GLASS
                  " finish { reflection 0.1 } photons { target %s } }\n",
                  cases[i].flags);
         LitScene lit;
         lit_make(&lit, text, 1, 1);
-        assert_int_equal(lit.maps.books.caustic[0].budget, cases[i].sent);
+        const LightBooks *books = &lit.maps.books.caustic[0];
+        /* the box is 4 of the disk's 2.25 pi, the floor around it is cut */
+        double hits = 200000 / cases[i].stores * 4 / (2.25 * PMS_PI);
+        assert_true(fabs((double)(books->emitted - books->cut) / hits - 1) < 0.05);
+        assert_true((double)books->emitted < 1.4 * hits);
         lit_done(&lit);
     }
 }
@@ -461,6 +492,7 @@ int main(void)
         cmocka_unit_test(share_can_be_overridden),
         cmocka_unit_test(overlapping_targets_count_once),
         cmocka_unit_test(flags_mean_what_they_say),
+        cmocka_unit_test(hidden_objects),
         cmocka_unit_test(direct_light_is_not_in_the_map),
         cmocka_unit_test(every_light_emits),
         cmocka_unit_test(dark_lights_emit_nothing),
