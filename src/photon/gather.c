@@ -5,6 +5,7 @@
 #include "photon/photon_map_int.h"
 #include "photon/search_int.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* The Gaussian of Jensen's course notes; its printed scale, and the one that keeps the light:
@@ -14,6 +15,10 @@
 #define GAUSSIAN_ALPHA 1.7283093000119807
 
 enum { RADIUS_SAMPLES_MIN = 100, RADIUS_SAMPLES_MAX = 1000, RADIUS_SAMPLES_PART = 20 };
+
+/* The part of the photons around which the search radius of a map holds enough others.  Near the
+ * mean density, as a focus sets it, the dim parts of a caustic would be single specks. */
+#define RADIUS_QUANTILE 0.8
 
 GatherScratch *gather_scratch_new(void)
 {
@@ -184,6 +189,12 @@ static size_t sample_radii(const PhotonMap *map, int max_photons, GatherScratch 
     return used;
 }
 
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
 double photon_map_radius(const PhotonMap *map, int max_photons)
 {
     double radii2[RADIUS_SAMPLES_MAX];
@@ -194,13 +205,8 @@ double photon_map_radius(const PhotonMap *map, int max_photons)
     }
     size_t used = sample_radii(map, max_photons, scratch, radii2);
     gather_scratch_free(scratch);
-    double density = 0; /* mean over the photons, so bright places count most */
-    for (size_t i = 0; i < used; i++)
-        density += 1 / radii2[i] / (double)used;
-    if (!(density > 0))
+    if (used == 0)
         return 0;
-    size_t sparse = 0;
-    for (size_t i = 0; i < used; i++)
-        sparse += 1 / radii2[i] < 0.7 * density && 1 / radii2[i] > 0.05 * density;
-    return (1 + 20 * (double)sparse / (double)used) / sqrt(density);
+    qsort(radii2, used, sizeof *radii2, compare_doubles);
+    return sqrt(radii2[(size_t)(RADIUS_QUANTILE * (double)(used - 1))]);
 }

@@ -80,9 +80,9 @@ int photon_nearest(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
  * disk, x uniform, is 1, but for KERNEL_GAUSSIAN_JENSEN, whose printed constant loses 46.9 %. */
 double gather_kernel(GatherKernel kernel, double x);
 
-/* Return the search radius for a map: where max_photons are found at the mean density around
- * its photons, wider when many of them lie much sparser than that.  Scene units; 0 for an empty
- * map.  Deterministic. */
+/* Return the search radius for a map: within it four in five of the map's photons have
+ * max_photons around them, so that only the faintest of a caustic is seen as single photons.
+ * Scene units; 0 for an empty map.  Deterministic. */
 double photon_map_radius(const PhotonMap *map, int max_photons);
 
 #endif
