@@ -54,6 +54,22 @@ static double grid_reach(int n, bool has_jitter)
     return 0.5 + jitter + CIRCULAR_SHIFT;
 }
 
+/* Bound the distance of the light's points from its centre. */
+static double area_radius(const AreaLight *area, const AreaFrame *frame)
+{
+    double reach1 = grid_reach(area->size1, area->has_jitter);
+    double reach2 = grid_reach(area->size2, area->has_jitter);
+    V3 a = v3_scale(frame->axis1, reach1), b = v3_scale(frame->axis2, reach2);
+    double corner2 = fmax(v3_len2(v3_add(a, b)), v3_len2(v3_sub(a, b)));
+    if (area->is_circular || area->is_oriented) {
+        /* The unit square goes to the unit disk: s A + t B with s^2 + t^2 <= reach^2. */
+        double reach = fmax(reach1, reach2), skew = fabs(v3_dot(frame->axis1, frame->axis2));
+        double longest2 = fmax(v3_len2(frame->axis1), v3_len2(frame->axis2)) + skew;
+        corner2 = fmin(corner2, reach * reach * longest2);
+    }
+    return sqrt(corner2);
+}
+
 V3 area_offset(const Light *light, const AreaFrame *frame, int i, int j, Rng *rng)
 {
     const AreaLight *area = &light->area;
@@ -129,9 +145,8 @@ Rgb area_shadow(EyeThread *eye, const EyeLight *light, const SurfaceSample *s,
                        .light_index = light->index,
                        .blocks_targets =
                            light->makes_caustics && s->surface->photons.is_collecting};
-    double reach = v3_len(grid.frame.axis1) * grid_reach(area->size1, area->has_jitter) +
-                   v3_len(grid.frame.axis2) * grid_reach(area->size2, area->has_jitter);
-    trace_shadow_bundle(eye->trace.tracer, &s->at, grid.to_center, reach, &grid.bundle);
+    double radius = area_radius(area, &grid.frame);
+    trace_shadow_bundle(eye->trace.tracer, &s->at, grid.to_center, radius, &grid.bundle);
     if (grid.bundle.count == 0)
         return RGB_WHITE;
     eye->grid_mark++;

@@ -115,7 +115,8 @@ static Rgb diffuse_gather(EyeThread *eye, const PhotonMap *map, const GatherLimi
 Rgb caustic_light(EyeThread *eye, const SurfaceSample *s)
 {
     const EyeOptions *options = &eye->options;
-    if (!options->caustic || !s->surface->photons.is_collecting)
+    if (!options->caustic || !s->surface->photons.is_collecting ||
+        !photon_reach_has(options->caustic_reach, s->at.p))
         return RGB_BLACK;
     if (!is_directional(s))
         return diffuse_gather(eye, options->caustic, &options->caustic_limits, s);

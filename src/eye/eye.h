@@ -6,6 +6,7 @@
 #ifndef PMS_EYE_EYE_H
 #define PMS_EYE_EYE_H
 
+#include "eye/photon_reach.h"
 #include "photon/gather.h"
 #include "trace/trace.h"
 
@@ -22,6 +23,7 @@ typedef struct EyeOptions {
     bool has_alpha;    /* the background shows in alpha instead of being opaque */
     uint64_t seed;
     const PhotonMap *caustic, *global; /* NULL: none */
+    const PhotonReach *caustic_reach;  /* for caustic_limits */
     GatherLimits caustic_limits, global_limits;
 } EyeOptions;
 

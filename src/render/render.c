@@ -63,6 +63,7 @@ typedef struct Render {
     Diag *diag;
     Tracer *tracer;
     PhotonMaps maps;
+    PhotonReach caustic_reach;
     Film film;
     RenderResult *out;
 } Render;
@@ -80,7 +81,12 @@ static Status make_maps(Render *r)
     if (!needs_photons(&r->out->plan))
         return OK;
     PhotonOptions options = photon_options(r->options);
-    return photon_pass(r->tracer, &options, r->diag, &r->out->stats, &r->maps);
+    TRY(photon_pass(r->tracer, &options, r->diag, &r->out->stats, &r->maps));
+    if (!r->maps.caustic)
+        return OK;
+    GatherLimits limits = gather_limits(&r->scene->settings, r->maps.caustic_radius);
+    double radius = limits.max_radius * (limits.min_photons > 0 ? GATHER_WIDEN : 1);
+    return photon_reach_init(&r->caustic_reach, r->maps.caustic, radius, r->diag);
 }
 
 static Status make_image(Render *r)
@@ -92,6 +98,7 @@ static Status make_image(Render *r)
                       .seed = r->options->seed,
                       .caustic = r->maps.caustic,
                       .global = r->maps.global,
+                      .caustic_reach = &r->caustic_reach,
                       .caustic_limits = gather_limits(settings, r->maps.caustic_radius),
                       .global_limits = gather_limits(settings, r->maps.global_radius)};
     TRY(film_init(&r->film, r->options, r->diag));
@@ -145,6 +152,7 @@ Status render_scene(const Scene *scene, const RenderOptions *options, Diag *diag
         r.maps.books = (PhotonBooks){0};
     }
     film_done(&r.film);
+    photon_reach_done(&r.caustic_reach);
     photon_maps_done(&r.maps);
     tracer_free(r.tracer);
     return status;

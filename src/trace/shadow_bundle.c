@@ -10,17 +10,19 @@
 
 #include <stdlib.h>
 
-/* Objects looked at together; and with more such groups than this the ray index is cheaper. */
-enum { GROUP_OBJECTS = 8, GROUPS_MAX = 512 };
+/* Objects looked at together when a ball around them is touched. */
+enum { GROUP_OBJECTS = 4 };
 
 /* Widens the light by more than the rounding of the places of its points. */
 #define WIDER (1 + 1e-9)
 
-/* Objects near each other and a ball around them all. */
+/* Objects near each other and a ball around them all.  Groups stand depth first: after one come
+ * its parts, and `skip` is where to go on without them. */
 typedef struct Group {
     V3 center;
     double radius;
-    uint32_t first, count; /* in BundleIndex.objects */
+    uint32_t skip;
+    uint32_t first, count; /* in BundleIndex.objects; count 0: the group has parts */
 } Group;
 
 struct BundleIndex {
@@ -44,42 +46,42 @@ static int by_key(const void *a, const void *b)
     return x->object < y->object ? -1 : x->object > y->object;
 }
 
-static void add_group(BundleIndex *index, const TracedObject *objects, const Placed *items,
-                      uint32_t first, uint32_t count)
+static Group *add_group(BundleIndex *index, const TracedObject *objects, const Placed *items,
+                        uint32_t count, const Bound *box)
 {
-    Bound box = BOUND_EMPTY;
-    for (uint32_t i = 0; i < count; i++)
-        box = bound_add(box, objects[items[i].object].center);
     Group *group = &index->groups[index->group_count++];
-    *group = (Group){.center = bound_center(box), .first = first, .count = count};
+    *group = (Group){.center = bound_center(*box)};
     for (uint32_t i = 0; i < count; i++) {
         const TracedObject *object = &objects[items[i].object];
         double reach = v3_dist(group->center, object->center) + object->radius;
         group->radius = fmax(group->radius, reach * WIDER);
-        index->objects[first + i] = items[i].object;
     }
+    return group;
 }
 
-/* Halve along the longest side of the box of centres until the halves are small. */
-static void split(BundleIndex *index, const TracedObject *objects, Placed *items, uint32_t first,
+/* Group the items, halving along the longest side of the box of centres until few are left. */
+static void build(BundleIndex *index, const TracedObject *objects, Placed *items, uint32_t first,
                   uint32_t count)
 {
-    if (count <= GROUP_OBJECTS) {
-        if (count > 0)
-            add_group(index, objects, items, first, count);
-        return;
-    }
     Bound box = BOUND_EMPTY;
     for (uint32_t i = 0; i < count; i++)
         box = bound_add(box, objects[items[i].object].center);
-    V3 size = v3_sub(box.hi, box.lo);
-    int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    for (uint32_t i = 0; i < count; i++)
-        items[i].key = v3_at(objects[items[i].object].center, axis);
-    qsort(items, count, sizeof *items, by_key);
-    uint32_t half = count / 2;
-    split(index, objects, items, first, half);
-    split(index, objects, items + half, first + half, count - half);
+    Group *group = add_group(index, objects, items, count, &box);
+    if (count <= GROUP_OBJECTS) {
+        group->first = first;
+        group->count = count;
+        for (uint32_t i = 0; i < count; i++)
+            index->objects[first + i] = items[i].object;
+    } else {
+        V3 size = v3_sub(box.hi, box.lo);
+        int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        for (uint32_t i = 0; i < count; i++)
+            items[i].key = v3_at(objects[items[i].object].center, axis);
+        qsort(items, count, sizeof *items, by_key);
+        build(index, objects, items, first, count / 2);
+        build(index, objects, items + count / 2, first + count / 2, count - count / 2);
+    }
+    group->skip = index->group_count;
 }
 
 BundleIndex *bundle_index_new(const TracedObject *objects, uint32_t object_count)
@@ -87,7 +89,7 @@ BundleIndex *bundle_index_new(const TracedObject *objects, uint32_t object_count
     BundleIndex *index = mem_alloc(sizeof *index);
     Placed *items = mem_array((size_t)object_count + 1, sizeof *items);
     if (index) {
-        index->groups = mem_array((size_t)object_count + 1, sizeof *index->groups);
+        index->groups = mem_array((size_t)object_count * 2 + 1, sizeof *index->groups);
         index->objects = mem_array((size_t)object_count + 1, sizeof *index->objects);
     }
     if (!index || !items || !index->groups || !index->objects) {
@@ -99,7 +101,8 @@ BundleIndex *bundle_index_new(const TracedObject *objects, uint32_t object_count
     for (uint32_t i = 0; i < object_count; i++)
         if (objects[i].shadow != SHADOW_NONE && objects[i].has_ball)
             items[count++].object = i;
-    split(index, objects, items, 0, count);
+    if (count > 0)
+        build(index, objects, items, 0, count);
     mem_free(items);
     return index;
 }
@@ -148,11 +151,15 @@ static bool note_all(const Tracer *tracer, const Hull *hull, ShadowBundle *out)
             !note(tracer->objects, number, hull, out))
             return false;
     }
-    for (uint32_t i = 0; i < index->group_count; i++) {
+    for (uint32_t i = 0; i < index->group_count;) {
         const Group *group = &index->groups[i];
-        if (!hull_misses_ball(hull, group->center, group->radius) &&
-            !note_group(tracer, group, hull, out))
+        if (hull_misses_ball(hull, group->center, group->radius)) {
+            i = group->skip;
+            continue;
+        }
+        if (!note_group(tracer, group, hull, out))
             return false;
+        i++;
     }
     return true;
 }
@@ -163,7 +170,7 @@ void trace_shadow_bundle(const Tracer *tracer, const ShapePoint *from, V3 to_cen
     double distance = v3_len(to_center);
     out->count = -1;
     radius = radius * WIDER + 1e-9 * distance;
-    if (!(radius < distance) || tracer->bundles->group_count > GROUPS_MAX)
+    if (!(radius < distance))
         return;
     /* All rays must leave on one side of the surface: then they start at the same point. */
     double above = fabs(v3_dot(to_center, from->ng));
