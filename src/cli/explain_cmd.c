@@ -31,13 +31,14 @@ static void print_features(const Explanation *e)
     }
 }
 
-static void print_lights(const Explanation *e, const char *map, const LightBooks *books, long total)
+static void print_lights(const Explanation *e, const char *map, const LightBooks *books)
 {
     if (!books)
         return;
-    printf("\n%s photons", map);
-    if (total > 0)
-        printf(", %ld in all", total);
+    uint64_t total = 0;
+    for (int i = 0; i < e->scene->light_count; i++)
+        total += books[i].budget;
+    printf("\n%s photons, %" PRIu64 " to send", map, total);
     printf("\n%-20s %12s %8s %10s\n", "light", "power", "share", "photons");
     for (int i = 0; i < e->scene->light_count; i++)
         printf("%-20s %12.5g %7.2f%% %10" PRIu64 "\n", e->scene->lights[i].name, books[i].power,
@@ -49,8 +50,8 @@ static void print_text(const Explanation *e)
     printf("scene %s: %u objects, %d lights\n\n", e->scene->path, e->scene->object_count,
            e->scene->light_count);
     print_features(e);
-    print_lights(e, "caustic", e->books.caustic, e->plan.caustic_photons);
-    print_lights(e, "global", e->books.global, e->plan.global_photons);
+    print_lights(e, "caustic", e->books.caustic);
+    print_lights(e, "global", e->books.global);
     if (!e->books.caustic && !e->books.global)
         printf("\nno photon pass\n");
 }

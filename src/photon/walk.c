@@ -202,13 +202,22 @@ static void pass_through(Walk *walk, const SurfaceSample *s)
     leave(walk, s, walk->ray.d, true);
 }
 
+/* A direction around +z with density cos/pi: above a point of the unit disk, found by trying, as
+ * that is cheaper than sines. */
+static V3 cosine_direction(Rng *rng)
+{
+    for (;;) {
+        double x = 2 * rng_double(rng) - 1, y = 2 * rng_double(rng) - 1, r2 = x * x + y * y;
+        if (r2 < 1)
+            return v3(x, y, sqrt(1 - r2));
+    }
+}
+
 static void bounce_diffusely(Walk *walk, const SurfaceSample *s)
 {
-    V2 u = {rng_double(walk->rng), 0};
-    u.v = rng_double(walk->rng);
     flux_here(walk);
     walk->is_diffuse = true;
-    leave(walk, s, v3_unit(warp_to_frame(warp_cosine(u), s->ng)), false);
+    leave(walk, s, v3_unit(warp_to_frame(cosine_direction(walk->rng), s->ng)), false);
 }
 
 /* Follow the branch the dice chose; returns false when the path ends here. */
