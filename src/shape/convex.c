@@ -69,32 +69,24 @@ static bool cut_by_leaf(const Shape *node, int child, const Ray *ray, ConvexCore
     return hits.count > 0 || hits.is_inside_before != leaf->is_inverted;
 }
 
-static Lanes lanes_load(const double numbers[BLOCK])
-{
-    Lanes out;
-    memcpy(&out, numbers, sizeof out);
-    return out;
-}
-
-static Lanes lanes_abs(Lanes x)
-{
-    return LANES_PICK(x < 0, -x, x);
-}
-
 /* Cut the core by a block of planes: as plane_hits, several at once.  Only those that may move
  * an end are looked at one by one. */
 static bool cut_by_planes(const Shape *node, const PlaneBlock *b, const Ray *ray, ConvexCore *core)
 {
-    const Lanes x = lanes_load(b->n[0]), y = lanes_load(b->n[1]), z = lanes_load(b->n[2]);
     const V3 o = ray->o, d = ray->d;
-    Lanes height = x * o.x + y * o.y + z * o.z - lanes_load(b->d);
+    Lanes x, y, z, distance, place;
+    memcpy(&x, b->n[0], sizeof x);
+    memcpy(&y, b->n[1], sizeof y);
+    memcpy(&z, b->n[2], sizeof z);
+    memcpy(&distance, b->d, sizeof distance);
+    memcpy(&place, b->place, sizeof place);
+    Lanes height = x * o.x + y * o.y + z * o.z - distance;
     Lanes speed = x * d.x + y * d.y + z * d.z, t = -height / speed;
-    Lanes at = lanes_abs(x * o.x) + lanes_abs(y * o.y) + lanes_abs(z * o.z);
-    Lanes per_t = lanes_abs(x * d.x) + lanes_abs(y * d.y) + lanes_abs(z * d.z);
-    Lanes reach = lanes_abs(t);
+    Lanes at = LANES_ABS(x * o.x) + LANES_ABS(y * o.y) + LANES_ABS(z * o.z);
+    Lanes per_t = LANES_ABS(x * d.x) + LANES_ABS(y * d.y) + LANES_ABS(z * d.z);
+    Lanes reach = LANES_ABS(t);
     Lanes error =
-        (4 * EPS_DOUBLE * (at + reach * per_t) + lanes_load(b->place)) / lanes_abs(speed) +
-        2 * EPS_DOUBLE * reach;
+        (4 * EPS_DOUBLE * (at + reach * per_t) + place) / LANES_ABS(speed) + 2 * EPS_DOUBLE * reach;
     double entry = core->entry.child == NO_CONVEX ? -INFINITY : core->entry.lo;
     double exit = core->exit.child == NO_CONVEX ? INFINITY : core->exit.hi;
     LaneMask is_entry = speed < 0;

@@ -151,6 +151,7 @@ enum { BLOCK = 4 };
 typedef double Lanes __attribute__((vector_size(8 * BLOCK)));
 typedef int64_t LaneMask __attribute__((vector_size(8 * BLOCK)));
 #define LANES_PICK(mask, a, b) ((Lanes)(((mask) & (LaneMask)(a)) | (~(mask) & (LaneMask)(b))))
+#define LANES_ABS(x) LANES_PICK((x) < 0, -(x), (x))
 
 /* The reaches of four children, side by side so that they are cut together. */
 struct ReachBlock {
