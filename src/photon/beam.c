@@ -79,7 +79,7 @@ static bool cone_ray(const Beam *beam, V2 square, BeamRay *out)
         axis = light->direction;
     }
     out->ray.o = out->location;
-    out->ray.d = v3_unit(warp_to_frame(cone_direction(square, rim), axis));
+    out->ray.d = warp_to_frame(cone_direction(square, rim), axis);
     out->measure = 2 * PMS_PI * rim;
     return true;
 }

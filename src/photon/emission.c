@@ -156,7 +156,7 @@ static double spaced_photons(const Beam *beam, double spacing)
         return 0;
     double step = spacing * beam->spacing_factor;
     if (!light_is_parallel(beam->light))
-        step /= fmax(v3_dist(beam->center, middle.location), 1e-300);
+        step /= fmax(v3_dist(beam->center, middle.location), fmax(beam->radius, 1e-300));
     return middle.measure / (step * step);
 }
 

@@ -64,22 +64,16 @@ static Rgb flux_here(Walk *walk)
 
 /* --- the roulette ----------------------------------------------------------------------- */
 
-/* May photons of this light be reflected (refracted) here?  Caustics need leave, indirect light
- * only must not be forbidden. */
+/* May photons of this light be reflected (refracted) here?  What photons{} says is about
+ * caustics; indirect light goes wherever light can. */
 static bool may_reflect(const Walk *walk, const Surface *surface)
 {
-    if (walk->rules->map == MAP_CAUSTIC)
-        return plan_photons_reflect(walk->beam->light, surface);
-    return surface->photons.reflection != TRI_OFF &&
-           walk->beam->light->photon_reflection != TRI_OFF;
+    return walk->rules->map == MAP_GLOBAL || plan_photons_reflect(walk->beam->light, surface);
 }
 
 static bool may_refract(const Walk *walk, const Surface *surface)
 {
-    if (walk->rules->map == MAP_CAUSTIC)
-        return plan_photons_refract(walk->beam->light, surface);
-    return surface->photons.refraction != TRI_OFF &&
-           walk->beam->light->photon_refraction != TRI_OFF;
+    return walk->rules->map == MAP_GLOBAL || plan_photons_refract(walk->beam->light, surface);
 }
 
 /* The probabilities of the three branches: that of going on at all is the largest channel of
@@ -217,7 +211,7 @@ static void bounce_diffusely(Walk *walk, const SurfaceSample *s)
 {
     flux_here(walk);
     walk->is_diffuse = true;
-    leave(walk, s, v3_unit(warp_to_frame(cosine_direction(walk->rng), s->ng)), false);
+    leave(walk, s, warp_to_frame(cosine_direction(walk->rng), s->ng), false);
 }
 
 /* Follow the branch the dice chose; returns false when the path ends here. */

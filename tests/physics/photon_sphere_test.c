@@ -92,6 +92,48 @@ static void other_lights(void **state)
                  8 * (1 - cos(PMS_PI / 3)) / 2);
 }
 
+/* S14: a clear ball of index 1 around the light changes nothing.  As a photon target it casts a
+ * full shadow and the caustic map brings the direct light; as a mere transparent object it lets
+ * shadow rays pass and there is nothing in that map.  Indirect light is the same either way. */
+static void no_path_counts_twice(void **state)
+{
+    (void)state;
+    for (int is_target = 0; is_target < 2; is_target++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 "#version 3.7;\n"
+                 "global_settings { assumed_gamma 1 max_trace_level 200 photons { count 100000 }\n"
+                 "  pms { gi on global_photons 200000 } }\n"
+                 "light_source { <0,0,0> rgb 1 }\n"
+                 "sphere { 0, 1 hollow pigment { rgb 1 } finish { ambient 0 diffuse 0.5 } }\n"
+                 "sphere { 0, 0.5 pigment { rgbt 1 } finish { ambient 0 diffuse 0 }\n"
+                 "  interior { ior 1 } photons { %s } }\n",
+                 is_target ? "target refraction on collect off" : "refraction off");
+        LitScene lit;
+        lit_make(&lit, text, 2, 3);
+        TraceThread thread;
+        assert_int_equal(trace_thread_init(&thread, lit.tracer, &lit.diag), OK);
+        GatherLimits limits = lit_within(0.2);
+        double direct = 0, caustic = 0, photons;
+        for (int i = 0; i < 300; i++) {
+            V3 n = somewhere((uint64_t)i);
+            ShapePoint wall = {.p = n, .p_error = 1e-9, .ng = v3_neg(n), .ns = v3_neg(n)};
+            Rgb shadow = trace_shadow(&thread, &wall, v3_neg(n), 1, 0, is_target), e = RGB_BLACK;
+            if (lit.maps.caustic)
+                photon_gather(lit.maps.caustic, n, v3_neg(n), &limits, lit.scratch, &e);
+            direct += (double)shadow.g / 300;
+            caustic += (double)e.g / 300;
+        }
+        double indirect = mean_indirect(&lit, 1, &photons);
+        print_message("# direct %.4f caustic %.4f indirect %.4f\n", direct, caustic, indirect);
+        assert_true(fabs(direct - !is_target) < 1e-6);
+        assert_true(fabs(caustic - is_target) < 0.01);
+        assert_true(fabs(indirect - 1) < 4 * 0.0045);
+        trace_thread_done(&thread);
+        lit_done(&lit);
+    }
+}
+
 /* Direct light is not in the map: black walls keep nothing, and the pass says so. */
 static void black_walls_store_nothing(void **state)
 {
@@ -110,9 +152,9 @@ static void black_walls_store_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(radiance_is_1_everywhere),  cmocka_unit_test(other_reflectances),
-        cmocka_unit_test(size_does_not_matter),      cmocka_unit_test(other_lights),
-        cmocka_unit_test(black_walls_store_nothing),
+        cmocka_unit_test(radiance_is_1_everywhere), cmocka_unit_test(other_reflectances),
+        cmocka_unit_test(size_does_not_matter),     cmocka_unit_test(other_lights),
+        cmocka_unit_test(no_path_counts_twice),     cmocka_unit_test(black_walls_store_nothing),
     };
     return cmocka_run_group_tests_name("photon_sphere", tests, NULL, NULL);
 }
