@@ -247,6 +247,18 @@ Status args_parse(Args *args, const char *command, int argc, char **argv, bool *
     return OK;
 }
 
+Status args_want_operands(const Args *args, int count, const char *what)
+{
+    if (args->operand_count == count)
+        return OK;
+    if (args->operand_count > count)
+        return diag_fail(args->diag, ERR_USAGE, "pms %s wants %s, got %d: '%s', '%s'%s",
+                         args->command, what, args->operand_count, args->operands[0],
+                         args->operands[1], args->operand_count > 2 ? ", ..." : "");
+    return diag_fail(args->diag, ERR_USAGE, "pms %s wants %s, got %d (--help tells more)",
+                     args->command, what, args->operand_count);
+}
+
 Status args_number(const Args *args, OptionId id, double lowest, double highest, double fallback,
                    double *out)
 {

@@ -6,8 +6,9 @@ static Status check_one(const Args *args, int index)
     Scene *scene;
     double seconds;
     TRY(args_load_scene(args, index, &scene, &seconds));
-    printf("%s: ok, %u objects, %d lights\n", args->operands[index], scene->object_count,
-           scene->light_count);
+    printf("%s: ok, %u object%s, %d light%s\n", args->operands[index], scene->object_count,
+           scene->object_count == 1 ? "" : "s", scene->light_count,
+           scene->light_count == 1 ? "" : "s");
     scene_free(scene);
     return OK;
 }

@@ -56,6 +56,9 @@ typedef struct Args {
  * stdout and setting *is_done. */
 Status args_parse(Args *args, const char *command, int argc, char **argv, bool *is_done);
 
+/* ERR_USAGE after a message unless there are `count` operands; `what` names them: "two images". */
+Status args_want_operands(const Args *args, int count, const char *what);
+
 /* Read an option as an integer or number in [lowest, highest]; `fallback` when not given. */
 Status args_int(const Args *args, OptionId id, long lowest, long highest, long fallback, long *out);
 Status args_number(const Args *args, OptionId id, double lowest, double highest, double fallback,
@@ -77,7 +80,8 @@ Status args_render_options(const Args *args, RenderOptions *out);
 Status output_write(const Args *args, const Scene *scene, RenderResult *result,
                     const char *const *paths, int path_count);
 
-/* Say early what could not be written later: unknown extensions, missing folders. */
+/* Say early what could not be written later: unknown extensions, missing folders, a bad --stats,
+ * and for PNG files a bad --bits, --ocio, --display or --view. */
 Status output_preflight(const Args *args, const char *const *paths, int path_count);
 
 /* Print a JSON string with its quotes, or a number (null when it is not finite). */

@@ -38,9 +38,7 @@ static Status compare(Args *args, int argc, char **argv)
     TRY(args_parse(args, "compare", argc, argv, &is_done));
     if (is_done)
         return OK;
-    if (args->operand_count != 2)
-        return diag_fail(args->diag, ERR_USAGE, "pms compare wants two images, got %d",
-                         args->operand_count);
+    TRY(args_want_operands(args, 2, "two images"));
     Image a, b;
     TRY(image_load(args->diag, args->operands[0], &a));
     Status status = image_load(args->diag, args->operands[1], &b);

@@ -47,8 +47,9 @@ static void print_lights(const Explanation *e, const char *map, const LightBooks
 
 static void print_text(const Explanation *e)
 {
-    printf("scene %s: %u objects, %d lights\n\n", e->scene->path, e->scene->object_count,
-           e->scene->light_count);
+    printf("scene %s: %u object%s, %d light%s\n\n", e->scene->path, e->scene->object_count,
+           e->scene->object_count == 1 ? "" : "s", e->scene->light_count,
+           e->scene->light_count == 1 ? "" : "s");
     print_features(e);
     print_lights(e, "caustic", e->books.caustic);
     print_lights(e, "global", e->books.global);
@@ -119,9 +120,7 @@ static Status explain(Args *args, int argc, char **argv)
     TRY(args_parse(args, "explain", argc, argv, &is_done));
     if (is_done)
         return OK;
-    if (args->operand_count != 1)
-        return diag_fail(args->diag, ERR_USAGE, "pms explain wants one scene file, got %d",
-                         args->operand_count);
+    TRY(args_want_operands(args, 1, "one scene file"));
     Scene *scene;
     double seconds;
     TRY(args_load_scene(args, 0, &scene, &seconds));

@@ -21,20 +21,6 @@ static FileKind kind_of(const char *path)
     return strcasecmp(extension, "png") == 0 ? FILE_PNG : FILE_UNKNOWN;
 }
 
-Status output_preflight(const Args *args, const char *const *paths, int path_count)
-{
-    for (int i = 0; i < path_count; i++) {
-        if (kind_of(paths[i]) == FILE_UNKNOWN)
-            return diag_fail(args->diag, ERR_USAGE,
-                             "cannot tell the format of '%s': it should end in .exr or .png",
-                             paths[i]);
-        OutFile out;
-        TRY(out_begin(args->diag, paths[i], &out));
-        out_discard(&out);
-    }
-    return OK;
-}
-
 enum { META_MAX = 16, META_TEXT = 2048 };
 
 /* The header fields, with room for their texts. */
@@ -115,12 +101,18 @@ static Status show(const Args *args, float *pixels, size_t count, int channels, 
     return status;
 }
 
+static Status png_bits(const Args *args, long *out)
+{
+    TRY(args_int(args, OPT_BITS, 8, 16, 8, out));
+    if (*out != 8 && *out != 16)
+        return diag_fail(args->diag, ERR_USAGE, "--bits wants 8 or 16, got %ld", *out);
+    return OK;
+}
+
 static Status write_png(const Args *args, const Image *image, const char *path, const Meta *meta)
 {
     long bits;
-    TRY(args_int(args, OPT_BITS, 8, 16, 8, &bits));
-    if (bits != 8 && bits != 16)
-        return diag_fail(args->diag, ERR_USAGE, "--bits wants 8 or 16, got %ld", bits);
+    TRY(png_bits(args, &bits));
     size_t count = (size_t)image->width * (size_t)image->height;
     float *pixels = mem_array(count, 4 * sizeof(float));
     if (!pixels)
@@ -155,4 +147,43 @@ Status output_write(const Args *args, const Scene *scene, RenderResult *result,
             TRY(write_png(args, &result->image, paths[i], &header->meta));
     }
     return OK;
+}
+
+static Status can_write(const Args *args, const char *path)
+{
+    OutFile out;
+    TRY(out_begin(args->diag, path, &out));
+    out_discard(&out);
+    return OK;
+}
+
+/* The options of PNG files, tried on one pixel. */
+static Status can_show(const Args *args)
+{
+    long bits;
+    bool is_srgb;
+    float pixel[3] = {0};
+    TRY(png_bits(args, &bits));
+    return show(args, pixel, 1, 3, &is_srgb);
+}
+
+Status output_preflight(const Args *args, const char *const *paths, int path_count)
+{
+    const char *stats = args->value[OPT_STATS];
+    bool has_kind[FILE_PNG + 1] = {false};
+    for (int i = 0; i < path_count; i++) {
+        FileKind kind = kind_of(paths[i]);
+        if (kind == FILE_UNKNOWN)
+            return diag_fail(args->diag, ERR_USAGE,
+                             "cannot tell the format of '%s': it should end in .exr or .png",
+                             paths[i]);
+        has_kind[kind] = true;
+        TRY(can_write(args, paths[i]));
+    }
+    if (stats && strcmp(stats, "-") != 0)
+        TRY(can_write(args, stats));
+    if (args_has(args, OPT_LAYERS) && !has_kind[FILE_EXR])
+        diag_warn(args->diag, WARN_FILE, SPAN_NONE,
+                  "--layers go into EXR files only, and no EXR file is to be written");
+    return has_kind[FILE_PNG] ? can_show(args) : OK;
 }

@@ -79,10 +79,7 @@ static Status render(Args *args, int argc, char **argv)
     TRY(args_parse(args, "render", argc, argv, &is_done));
     if (is_done)
         return OK;
-    if (args->operand_count != 1)
-        return diag_fail(args->diag, ERR_USAGE,
-                         "pms wants one scene file, got %d (--help tells more)",
-                         args->operand_count);
+    TRY(args_want_operands(args, 1, "one scene file"));
     if (args->output_count == 0)
         TRY(default_outputs(args));
     Scene *scene;

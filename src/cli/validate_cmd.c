@@ -160,9 +160,7 @@ static Status validate(Args *args, int argc, char **argv)
     TRY(args_parse(args, "validate", argc, argv, &is_done));
     if (is_done)
         return OK;
-    if (args->operand_count != 1)
-        return diag_fail(args->diag, ERR_USAGE, "pms validate wants one scene file, got %d",
-                         args->operand_count);
+    TRY(args_want_operands(args, 1, "one scene file"));
     /* povray is allowed to write in few places; /tmp is one of them. */
     const char *temp = getenv("TMPDIR");
     char folder[FILE_PATH_MAX / 2];

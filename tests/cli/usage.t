@@ -22,7 +22,7 @@ run "$PMS" --version
 ok $? "--version"
 
 fails 2 "wants one scene file" "no scene" "$PMS"
-fails 2 "wants one scene file, got 2" "two scenes" "$PMS" a.pms b.pms
+fails 2 "wants one scene file, got 2: 'a.pms', 'b.pms'" "two scenes" "$PMS" a.pms b.pms
 fails 2 "no option --wdith.*did you mean --width" "a slip of the fingers" "$PMS" --wdith=3 "$T/s.pms"
 fails 2 "no option -x" "unknown letter" "$PMS" -x "$T/s.pms"
 fails 2 "does not know the switch \+ZZ" "unknown switch" "$PMS" +ZZ "$T/s.pms"
@@ -38,6 +38,20 @@ fails 3 "cannot write" "output folder missing" "$PMS" -o "$T/none/a.png" "$T/s.p
 fails 3 "is a directory" "output is a folder" sh -c "mkdir -p '$T/d.png'; exec '$PMS' -o '$T/d.png' '$T/s.pms'"
 fails 2 "no display|display" "unknown display" "$PMS" --display=nowhere -w 8 --height=8 -o "$T/a.png" "$T/s.pms"
 fails 3 "nowhere.ocio" "missing colour configuration" "$PMS" --ocio="$T/nowhere.ocio" -w 8 --height=8 -o "$T/a.png" "$T/s.pms"
+
+# What would fail after the picture is made is said before.
+early() {
+    name=$1
+    shift
+    run "$PMS" "$@" --progress=json -w 64 --height=48 -o "$T/a.png" "$T/s.pms"
+    [ "$code" -ne 0 ] && [ -s "$T/err" ] && ! grep -q '"phase"' "$T/err"
+    ok $? "before rendering: $name"
+}
+early "unknown display" --display=nowhere
+early "unknown view" --view=nowhere
+early "missing colour configuration" --ocio="$T/nowhere.ocio"
+early "bad number of bits" --bits=12
+early "statistics in a missing folder" --stats="$T/none/stats.json"
 [ ! -e "$T/a.png" ] && ! ls "$T"/*.part* >/dev/null 2>&1
 ok $? "nothing half-written is left"
 
@@ -53,4 +67,7 @@ ok $? "default output names"
 run "$PMS" "$T/s.pms" -w 8 --height 6 --bits=16 --half --layers=direct,caustic,indirect,Z,N,albedo -o "$T/h.exr" -o "$T/h.png"
 [ "$code" -eq 0 ]
 ok $? "half, 16 bits, layers"
+run "$PMS" "$T/s.pms" -w 8 --height 6 --layers=Z -o "$T/l.png"
+[ "$code" -eq 0 ] && grep -q "warning: --layers" "$T/err"
+ok $? "layers without an EXR file: a warning"
 plan
