@@ -64,6 +64,7 @@ demo: deps ## build and render the show scene to out/
 	$(Q)$(MAKE) --no-print-directory $(B)/pms
 	$(Q)mkdir -p out
 	$(Q)$(B)/pms scenes/caustic_glass.pms -o out/caustic_glass.exr -o out/caustic_glass.png
+	@echo "  wrote   out/caustic_glass.png and out/caustic_glass.exr"
 
 check: deps ## build and run the tests (a few minutes)
 	$(Q)$(MAKE) --no-print-directory check-built
