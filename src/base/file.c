@@ -3,7 +3,9 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -49,8 +51,8 @@ Status file_open_input(Diag *diag, const char *path, int *fd, size_t *size)
     return status;
 }
 
-Status file_read(Diag *diag, const char *path, size_t limit_bytes, Arena *arena,
-                 const char **text, size_t *size)
+Status file_read(Diag *diag, const char *path, size_t limit_bytes, Arena *arena, const char **text,
+                 size_t *size)
 {
     int fd;
     size_t wanted;
@@ -75,15 +77,29 @@ bool file_exists(const char *path)
     return stat(path, &info) == 0 && S_ISREG(info.st_mode) && access(path, R_OK) == 0;
 }
 
-Status out_begin(Diag *diag, const char *path, OutFile *out)
+/* Resolve links, so that the rename replaces what a link points at and not the link. */
+static Status choose_names(Diag *diag, const char *path, OutFile *out)
 {
-    int length = snprintf(out->path, sizeof out->path, "%s", path);
-    int temp_length = snprintf(out->temp_path, sizeof out->temp_path, "%s.part%ld", path, (long)getpid());
+    char target[PATH_MAX];
+    const char *final = realpath(path, target) ? target : path;
+    int length = snprintf(out->path, sizeof out->path, "%s", final);
+    int temp_length =
+        snprintf(out->temp_path, sizeof out->temp_path, "%s.part%ld", final, (long)getpid());
     if (length >= (int)sizeof out->path || temp_length >= (int)sizeof out->temp_path)
         return diag_fail(diag, ERR_FILE, "the path '%.60s...' is too long", path);
+    return OK;
+}
+
+Status out_begin(Diag *diag, const char *path, OutFile *out)
+{
     struct stat info;
-    if (stat(path, &info) == 0 && S_ISDIR(info.st_mode))
+    bool is_there = stat(path, &info) == 0;
+    if (is_there && S_ISDIR(info.st_mode))
         return diag_fail(diag, ERR_FILE, "cannot write '%s': it is a directory", path);
+    /* A rename would put a plain file where the device or pipe was. */
+    if (is_there && !S_ISREG(info.st_mode))
+        return diag_fail(diag, ERR_FILE, "cannot write '%s': it is not a regular file", path);
+    TRY(choose_names(diag, path, out));
     int fd = open(out->temp_path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (fd < 0)
         return refuse(diag, "write", path, errno);
@@ -110,20 +126,36 @@ void out_discard(OutFile *out)
     unlink(out->temp_path);
 }
 
+/* Write all bytes to the file at `at`; returns 0 or the errno. */
+static int write_all(const char *at, const void *bytes, size_t size)
+{
+    FILE *file = fopen(at, "wb");
+    if (!file)
+        return errno;
+    int error = fwrite(bytes, 1, size, file) == size ? 0 : errno;
+    if (fclose(file) != 0 && !error)
+        error = errno;
+    return error;
+}
+
+/* A device or a pipe is written as it stands: there is nothing to keep whole. */
+static bool is_stream(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
+}
+
 Status file_write(Diag *diag, const char *path, const void *bytes, size_t size)
 {
     OutFile out;
-    TRY(out_begin(diag, path, &out));
-    FILE *file = fopen(out.temp_path, "wb");
-    bool is_written = file && fwrite(bytes, 1, size, file) == size;
-    int error = errno;
-    if (file && fclose(file) != 0 && is_written) {
-        is_written = false;
-        error = errno;
-    }
-    if (is_written)
-        return out_commit(diag, &out);
-    out_discard(&out);
+    bool is_direct = is_stream(path);
+    if (!is_direct)
+        TRY(out_begin(diag, path, &out));
+    int error = write_all(is_direct ? path : out.temp_path, bytes, size);
+    if (!error)
+        return is_direct ? OK : out_commit(diag, &out);
+    if (!is_direct)
+        out_discard(&out);
     return refuse(diag, "write", path, error);
 }
 

@@ -30,7 +30,8 @@ typedef struct OutFile {
     char temp_path[FILE_PATH_MAX]; /* where it is now; open this one */
 } OutFile;
 
-/* Choose the temporary name for `path` and create it empty.  Fails with ERR_FILE. */
+/* Choose the temporary name for `path` and create it empty.  A link stays a link: what it points
+ * at is replaced.  Fails with ERR_FILE, also for a device or a pipe. */
 Status out_begin(Diag *diag, const char *path, OutFile *out);
 
 /* Flush the finished temporary file to disk and rename it.  On failure it is removed. */
@@ -39,7 +40,8 @@ Status out_commit(Diag *diag, OutFile *out);
 /* Remove the temporary file. */
 void out_discard(OutFile *out);
 
-/* Write `size` bytes as the whole content of `path` (out_begin .. out_commit). */
+/* Write `size` bytes as the whole content of `path` (out_begin .. out_commit), or into the device
+ * or pipe that it names. */
 Status file_write(Diag *diag, const char *path, const void *bytes, size_t size);
 
 /* Return the extension of `path` without its dot ("" if none), borrowed from `path`. */

@@ -28,8 +28,7 @@ static StrEntry *place_of(const StrMap *map, const char *key, size_t length, uin
         StrEntry *entry = &map->entries[i];
         if (!entry->key)
             return entry;
-        if (entry->hash == hash && entry->length == length &&
-            memcmp(entry->key, key, length) == 0)
+        if (entry->hash == hash && entry->length == length && memcmp(entry->key, key, length) == 0)
             return entry;
     }
 }
@@ -120,7 +119,8 @@ const char *strmap_nearest(const StrMap *map, const char *key, size_t length)
         if (!entry->key || !entry->value)
             continue;
         int distance = word_distance(key, length, entry->key, entry->length, limit);
-        bool is_nearer = distance < best || (distance == best && nearest && strcmp(entry->key, nearest) < 0);
+        bool is_nearer =
+            distance < best || (distance == best && nearest && strcmp(entry->key, nearest) < 0);
         if (is_nearer && distance <= limit) {
             best = distance;
             nearest = entry->key;

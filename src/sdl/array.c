@@ -87,10 +87,11 @@ static int take_size(Parser *p, double *count)
     parse_expect(p, TOKEN_LBRACKET, "`array`");
     HoldState hold = hold_aside(p);
     Span begin = parse_peek(p)->span;
-    double size = trunc(parse_float(p) + SDL_EPSILON);
+    double wanted = parse_float(p);
+    double size = trunc(wanted + SDL_EPSILON);
     Span span = span_join(begin, p->last);
     if (!(size >= 1))
-        parse_fail(p, span, "the size of an array is at least 1, not %g", size);
+        parse_fail(p, span, "the size of an array is at least 1, not %g", wanted);
     *count *= size;
     if (!(*count <= ARRAY_ITEM_MAX))
         parse_fail(p, span, "an array has at most %.0f items", ARRAY_ITEM_MAX);

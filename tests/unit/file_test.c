@@ -6,6 +6,7 @@
 #include <setjmp.h>
 #include <stdint.h>
 #include <cmocka.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -102,6 +103,46 @@ static void test_discard_leaves_old_file(void **state)
     unlink(path);
 }
 
+static void test_link_stays_a_link(void **state)
+{
+    Folder *f = *state;
+    char real[128], link[128];
+    struct stat info;
+    snprintf(real, sizeof real, "%s/real.txt", f->path);
+    snprintf(link, sizeof link, "%s/link.txt", f->path);
+    assert_int_equal(file_write(&f->diag, real, "old", 3), OK);
+    assert_int_equal(symlink(real, link), 0);
+    assert_int_equal(file_write(&f->diag, link, "newer", 5), OK);
+    assert_int_equal(lstat(link, &info), 0);
+    assert_true(S_ISLNK(info.st_mode));
+    assert_int_equal(stat(real, &info), 0);
+    assert_int_equal(info.st_size, 5);
+    unlink(link);
+    unlink(real);
+}
+
+/* A pipe stays a pipe: bytes go through it, and no picture takes its place. */
+static void test_pipe_stays_a_pipe(void **state)
+{
+    Folder *f = *state;
+    char path[128], got[8] = "";
+    struct stat info;
+    OutFile out;
+    snprintf(path, sizeof path, "%s/pipe", f->path);
+    assert_int_equal(mkfifo(path, 0600), 0);
+    int fd = open(path, O_RDWR | O_NONBLOCK);
+    assert_true(fd >= 0);
+    assert_int_equal(file_write(&f->diag, path, "abc", 3), OK);
+    assert_int_equal(read(fd, got, sizeof got), 3);
+    assert_string_equal(got, "abc");
+    assert_int_equal(out_begin(&f->diag, path, &out), ERR_FILE);
+    assert_non_null(strstr(said, "not a regular file"));
+    assert_int_equal(stat(path, &info), 0);
+    assert_true(S_ISFIFO(info.st_mode));
+    close(fd);
+    unlink(path);
+}
+
 static void test_paths(void **state)
 {
     (void)state;
@@ -118,6 +159,8 @@ int main(void)
         cmocka_unit_test(test_round_trip),
         cmocka_unit_test(test_refusals),
         cmocka_unit_test(test_discard_leaves_old_file),
+        cmocka_unit_test(test_link_stays_a_link),
+        cmocka_unit_test(test_pipe_stays_a_pipe),
         cmocka_unit_test(test_paths),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
