@@ -148,6 +148,13 @@ void diag_done(Diag *diag)
     pthread_mutex_destroy(&diag->lock);
 }
 
+static void count_error(Diag *diag)
+{
+    pthread_mutex_lock(&diag->lock);
+    diag->errors++;
+    pthread_mutex_unlock(&diag->lock);
+}
+
 static void report(Diag *diag, Span span, const char *kind, const char *format, va_list args,
                    bool with_excerpt)
 {
@@ -166,7 +173,7 @@ static void report(Diag *diag, Span span, const char *kind, const char *format, 
 
 void diag_error_v(Diag *diag, Span span, const char *format, va_list args)
 {
-    diag->errors++;
+    count_error(diag);
     report(diag, span, "error", format, args, true);
 }
 
@@ -214,7 +221,7 @@ Status diag_fail(Diag *diag, Status status, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    diag->errors++;
+    count_error(diag);
     report(diag, SPAN_NONE, "error", format, args, false);
     va_end(args);
     return status;

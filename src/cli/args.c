@@ -6,6 +6,7 @@
 #include "base/strmap.h"
 #include "base/work.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
@@ -111,10 +112,19 @@ Status args_add_operand(Args *args, const char *operand)
     return keep(args, &args->operands, &args->operand_count, operand);
 }
 
+static bool is_name(const char *text, size_t length)
+{
+    for (size_t i = 0; i < length; i++)
+        if (!isalpha((unsigned char)text[i]) && text[i] != '_' &&
+            (i == 0 || !isdigit((unsigned char)text[i])))
+            return false;
+    return true;
+}
+
 Status args_add_declare(Args *args, const char *text)
 {
     const char *equals = strchr(text, '=');
-    if (!equals || equals == text)
+    if (!equals || equals == text || !is_name(text, (size_t)(equals - text)))
         return diag_fail(args->diag, ERR_USAGE, "a declaration looks like NAME=VALUE, got '%s'",
                          text);
     SdlDeclare *grown = ARENA_ARRAY(args->arena, SdlDeclare, (size_t)args->declare_count + 1);

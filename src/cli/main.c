@@ -38,6 +38,15 @@ static void catch_signals(void)
     signal(SIGXFSZ, SIG_IGN);
 }
 
+/* What was printed must have arrived. */
+static int end(int code)
+{
+    if (fflush(stdout) == 0 && !ferror(stdout))
+        return code;
+    fprintf(stderr, "pms: error: cannot write to the standard output\n");
+    return code ? code : status_exit_code(ERR_FILE);
+}
+
 int main(int argc, char **argv)
 {
     catch_signals();
@@ -45,7 +54,7 @@ int main(int argc, char **argv)
         if (strcmp(argv[1], commands[i].name) != 0)
             continue;
         argv[1] = argv[0];
-        return commands[i].run(argc - 1, argv + 1);
+        return end(commands[i].run(argc - 1, argv + 1));
     }
-    return render_cmd(argc, argv);
+    return end(render_cmd(argc, argv));
 }

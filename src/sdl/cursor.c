@@ -5,7 +5,9 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/parser_int.h"
 
-enum { MEMORY_CHECK_TOKENS = 1024 };
+#include "base/work.h"
+
+enum { CHECK_TOKENS = 1024 };
 
 Frame *frame_top(Parser *p)
 {
@@ -83,14 +85,22 @@ void nest_leave(Parser *p)
 /* --- tokens as they stand ------------------------------------------------------------------------
  */
 
-/* Count against the limits; memory only now and then. */
+static void check_rarely(Parser *p, Span span)
+{
+    if (work_interrupted)
+        parse_fail_status(p, diag_fail(p->diag, ERR_INTERRUPTED, "interrupted"));
+    if (arena_bytes(p->scene->arena) > p->bytes_max)
+        parse_fail(p, span, "the scene takes more than %zu bytes of memory", p->bytes_max);
+}
+
+/* Count against the limits; memory and Ctrl-C are looked at only now and then. */
 static void count_token(Parser *p, Span span)
 {
     if (--p->tokens_left < 0)
         parse_fail(p, span, "more than %ld tokens evaluated; raise with --max-tokens",
                    p->tokens_max);
-    if (p->tokens_left % MEMORY_CHECK_TOKENS == 0 && arena_bytes(p->scene->arena) > p->bytes_max)
-        parse_fail(p, span, "the scene takes more than %zu bytes of memory", p->bytes_max);
+    if (p->tokens_left % CHECK_TOKENS == 0)
+        check_rarely(p, span);
 }
 
 static void take(Parser *p, const Token *token)

@@ -1,6 +1,6 @@
 /* sdl_load: from a file to a Scene.
  *
- * Here is the one setjmp of the program.  Nothing below it owns anything but arena memory, so
+ * Here is the one setjmp of the parser.  Nothing below it owns anything but arena memory, so
  * a parse that fails is dropped by freeing two arenas.  SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/parser_int.h"
 

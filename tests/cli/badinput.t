@@ -4,31 +4,32 @@
 
 # scene NAME TEXT: write a scene file.
 scene() { printf '%s\n' "$2" >"$T/$1.pms"; }
-# bad NAME PATTERN TEXT: checking this scene must fail with exit 2 and say PATTERN.
+# bad NAME PATTERN TEXT: checking this scene must fail with exit 2, and the line of the error, behind
+# the file's name and the place, must say PATTERN.
 bad() {
     scene "$1" "$3"
-    fails 2 "$2" "$1" timeout 20 "$PMS" check "$T/$1.pms"
+    fails 2 "[0-9]: error: .*($2)" "$1" timeout 20 "$PMS" check "$T/$1.pms"
 }
 
-bad truncated "truncated.pms:[0-9]+:[0-9]+: error: the file ends" 'sphere { <0,0,0>, 1'
-bad truncated-string "error: .*string" 'global_settings { assumed_gamma 1 } #declare S = "abc'
-bad truncated-comment "error: .*comment" 'sphere { 0, 1 } /* what'
-bad truncated-if "error: .*#end" '#if (1) sphere { 0, 1 }'
+bad truncated "the file ends" 'sphere { <0,0,0>, 1'
+bad truncated-string "string" 'global_settings { assumed_gamma 1 } #declare S = "abc'
+bad truncated-comment "comment" 'sphere { 0, 1 } /* what'
+bad truncated-if "#end" '#if (1) sphere { 0, 1 }'
 bad missing-include "nowhere.inc" '#include "nowhere.inc"'
 printf '#include "b.inc"\n' >"$T/a.inc"; printf '#include "a.inc"\n' >"$T/b.inc"
-bad include-cycle "includes itself|cycle|nest" '#include "a.inc"'
-bad wrong-type "error: .*wants|wanted" 'sphere { "abc", 1 }'
+bad include-cycle "includes itself" '#include "a.inc"'
+bad wrong-type "wants|wanted" 'sphere { "abc", 1 }'
 bad unknown-word "did you mean .?sphere" 'shpere { 0, 1 }'
-bad not-yet "not.*yet|yet" 'blob { threshold 1 sphere { 0, 1, 1 } }'
-bad nan-transform "finite|not a number|nan|number" 'sphere { 0, 1 translate <1e308*10*0, 0, 0> }'
-bad singular-matrix "singular|inverse" 'sphere { 0, 1 matrix <1,0,0, 1,0,0, 0,0,1, 0,0,0> }'
-bad zero-plane "normal" 'plane { <0,0,0>, 1 }'
-bad equal-ends "end|axis|same" 'cylinder { <1,1,1>, <1,1,1>, 1 }'
-bad bad-index "index|range|vert" 'mesh2 { vertex_vectors { 3, 0, x, y } face_indices { 1, <0,1,7> } }'
-bad endless-loop "token" '#while (1) #end'
-bad deep-macro "nest" '#macro M() M() #end M()'
-bad lookat "location" 'camera { location <1,2,3> look_at <1,2,3> } sphere { 0, 1 }'
-bad illegal "error" 'sphere { 0, 1 } $$ @'
+bad not-yet "has no .blob. yet" 'blob { threshold 1 sphere { 0, 1, 1 } }'
+bad nan-transform "finite" 'sphere { 0, 1 translate <1e308*10*0, 0, 0> }'
+bad singular-matrix "singular" 'sphere { 0, 1 matrix <1,0,0, 1,0,0, 0,0,1, 0,0,0> }'
+bad zero-plane "normal of a plane is 0" 'plane { <0,0,0>, 1 }'
+bad equal-ends "ends of a cylinder" 'cylinder { <1,1,1>, <1,1,1>, 1 }'
+bad bad-index "out of range" 'mesh2 { vertex_vectors { 3, 0, x, y } face_indices { 1, <0,1,7> } }'
+bad endless-loop "tokens evaluated" '#while (1) #end'
+bad deep-macro "nest too deep" '#macro M() M() #end M()'
+bad lookat "look_at is where the camera is" 'camera { location <1,2,3> look_at <1,2,3> } sphere { 0, 1 }'
+bad illegal "no meaning" 'sphere { 0, 1 } $$ @'
 
 head -c 4096 /dev/urandom >"$T/garbage.pms"
 run timeout 20 "$PMS" check "$T/garbage.pms"
@@ -66,4 +67,31 @@ wait $pid
 code=$?
 [ "$code" -eq 130 ] && ! ls "$T"/cut.exr* >/dev/null 2>&1
 ok $? "interrupted: exit 130 and no file (exit $code)"
+scene forever '#while (1) #end'
+"$PMS" check "$T/forever.pms" --max-tokens=1000000000000 2>"$T/err" &
+pid=$!
+sleep 0.5
+kill -INT $pid
+(sleep 10; kill -KILL $pid) 2>/dev/null &
+watch=$!
+wait $pid
+code=$?
+kill $watch 2>/dev/null
+[ "$code" -eq 130 ] && grep -q interrupted "$T/err"
+ok $? "interrupted while reading: exit 130 (exit $code)"
+
+if [ -c /dev/full ]; then
+    "$PMS" explain "$T/good.pms" >/dev/full 2>"$T/err"
+    code=$?
+    [ "$code" -eq 3 ] && grep -q "cannot write" "$T/err"
+    ok $? "a full standard output is an error (exit $code)"
+else
+    skip "no /dev/full here"
+fi
+
+mkfifo "$T/pipe.png"
+fails 3 "not a regular file" "a pipe as picture" "$PMS" "$T/good.pms" -w 8 --height 8 -o "$T/pipe.png"
+[ -p "$T/pipe.png" ]
+ok $? "the pipe is still there"
+fails 2 "NAME=VALUE" "a declaration without a name" "$PMS" check "$T/good.pms" Declare=1x=3
 plan
