@@ -52,7 +52,7 @@ Status work_for(int threads, size_t count, WorkFn fn, void *ctx)
     work(&workers[0]);
     for (int i = 1; i < started; i++)
         pthread_join(workers[i].handle, NULL);
-    return atomic_load(&crew.next) < count ? ERR_INTERRUPTED : OK;
+    return work_interrupted ? ERR_INTERRUPTED : OK;
 }
 
 int work_thread_count(void)

@@ -18,7 +18,8 @@ typedef void (*WorkFn)(void *ctx, size_t index, int thread);
 /* Call fn(ctx, i, thread) once for every i in [0, count), on `threads` threads, handing the
  * indices out in ascending order.  The calling thread is one of them.
  *
- * Returns OK, or ERR_INTERRUPTED when work_interrupted was set before all were handed out.
+ * Returns OK, or ERR_INTERRUPTED when work_interrupted was set before all were done: an item may
+ * cut itself short when it sees the flag.
  * When a thread cannot be started the others do its work. */
 Status work_for(int threads, size_t count, WorkFn fn, void *ctx);
 

@@ -5,6 +5,8 @@
  * their sum.  SPDX-License-Identifier: Apache-2.0 */
 #include "eye/eye_int.h"
 
+#include "base/work.h"
+
 /* Surfaces one path may pass: straight ones do not count as trace levels, so a stack of
  * perfectly clear sheets would have no end but this. */
 enum { PATH_SURFACES_MAX = 10000 };
@@ -77,11 +79,13 @@ static float reflection_weight(const SurfaceLayer *layer)
     return fmaxf(rgb_max(finish->reflection_min), rgb_max(finish->reflection_max));
 }
 
-/* May a ray of this weight be traced?  Rays that go straight on need a level too. */
+/* May a ray of this weight be traced?  Rays that go straight on need a level too.  None may once
+ * the render is interrupted: what mirrors a sample stands between can make it as good as endless.
+ */
 static bool may_trace(EyeThread *eye, int level, float weight)
 {
     const SceneSettings *settings = &eye->scene->settings;
-    if (!((double)weight >= settings->adc_bailout))
+    if (!((double)weight >= settings->adc_bailout) || work_interrupted)
         return false;
     return !stat_rare(&eye->trace.stats, STAT_TRACE_LIMIT, level >= settings->max_trace_level);
 }

@@ -15,7 +15,6 @@ typedef struct FoundPhotons {
 
 struct GatherScratch {
     FoundPhotons found;
-    float *weights; /* as long as found */
     GatheredPhoton *list;
     size_t list_capacity;
     const PhotonMap *guess_map[GATHER_GUESSES]; /* whose last squared radius is known */

@@ -48,8 +48,9 @@ static bool sample_film(void *ctx, double x, double y, uint32_t pixel, uint32_t 
                         float *vector)
 {
     Seat *seat = ctx;
-    EyeSample sample;
-    bool is_good = eye_sample(seat->eye, x, y, pixel, index, &sample);
+    EyeSample sample = {.depth = INFINITY};
+    /* What is left of an interrupted picture is not looked at. */
+    bool is_good = !work_interrupted && eye_sample(seat->eye, x, y, pixel, index, &sample);
     film_vector(seat->film, &sample, vector);
     return is_good;
 }

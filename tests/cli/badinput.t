@@ -80,6 +80,23 @@ kill $watch 2>/dev/null
 [ "$code" -eq 130 ] && grep -q interrupted "$T/err"
 ok $? "interrupted while reading: exit 130 (exit $code)"
 
+# Between two mirrors of glass each ray makes two, so a single sample takes for ever.
+scene mirrors '#version 3.7; global_settings { assumed_gamma 1 max_trace_level 256 adc_bailout 0 }
+camera { location -5*z } light_source { <3, 5, -5>, 1 }
+#declare M = texture { pigment { rgbt 1 } finish { reflection 1 } }
+sphere { 0, 1 texture { M } interior { ior 1.5 } } plane { z, 3 texture { M } } plane { -z, 9 texture { M } }'
+"$PMS" "$T/mirrors.pms" -w 8 --height 8 -o "$T/mirrors.png" 2>"$T/err" &
+pid=$!
+sleep 0.5
+kill -INT $pid
+(sleep 10; kill -KILL $pid) 2>/dev/null &
+watch=$!
+wait $pid
+code=$?
+kill $watch 2>/dev/null
+[ "$code" -eq 130 ] && ! ls "$T"/mirrors.png* >/dev/null 2>&1
+ok $? "interrupted within a sample: exit 130 and no file (exit $code)"
+
 if [ -c /dev/full ]; then
     "$PMS" explain "$T/good.pms" >/dev/full 2>"$T/err"
     code=$?

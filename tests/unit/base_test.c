@@ -213,6 +213,9 @@ static void test_work(void **state)
     assert_int_equal(work_for(2, 1000, tally, &cut), ERR_INTERRUPTED);
     work_interrupted = 0;
     assert_int_equal(cut.done[999], 0);
+    Tally late = {.limit = 999}; /* the last item may have cut itself short */
+    assert_int_equal(work_for(2, 1000, tally, &late), ERR_INTERRUPTED);
+    work_interrupted = 0;
     assert_int_equal(work_for(4, 0, tally, &cut), OK);
     assert_true(work_thread_count() >= 1);
 }
