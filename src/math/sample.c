@@ -64,6 +64,11 @@ double sample_1d(uint32_t index, uint64_t key)
     return sample_2d(index, key).u;
 }
 
+double sample_inverse(uint32_t index, uint64_t key)
+{
+    return to_unit(scramble_reversed(index, (uint32_t)rng_mix(key + 0x9e3779b97f4a7c15u)));
+}
+
 V2 warp_disk(V2 u)
 {
     double a = 2 * u.u - 1, b = 2 * u.v - 1;

@@ -15,6 +15,10 @@ V2 sample_2d(uint32_t index, uint64_t key);
 /* Return point `index` of the van der Corput sequence in [0,1), scrambled by `key`. */
 double sample_1d(uint32_t index, uint64_t key);
 
+/* Return the radical inverse of `index` in [0,1), Owen-scrambled by `key` but in its own order:
+ * with index/n it makes a Hammersley set of n points, even better spread than a sequence. */
+double sample_inverse(uint32_t index, uint64_t key);
+
 /* Map the unit square to the unit disk, area preserving (concentric map). */
 V2 warp_disk(V2 u);
 

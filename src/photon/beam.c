@@ -183,7 +183,7 @@ void beam_set_cells(Beam *beam, const float *found)
 
 V2 beam_warp(const Beam *beam, V2 uniform, double *density)
 {
-    int side = beam->side, guide = (int)(uniform.u * BEAM_GUIDES);
+    int side = beam->side, guide = (int)(fmin(uniform.u, 1 - 0x1p-53) * BEAM_GUIDES);
     int low = beam->guide[guide], high = beam->guide[guide + 1];
     while (low < high) {
         int middle = (low + high) / 2;

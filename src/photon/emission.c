@@ -128,16 +128,22 @@ static void set_keys(Emission *emission)
         Rng keys =
             rng_at(emission->options->seed, PASS_KEYS + (uint32_t)emission->rules.map, (uint64_t)i);
         beam->square_key = rng_u64(&keys);
+        beam->shift_key = rng_u64(&keys);
         beam->area_key = rng_u64(&keys);
         beam->choice_key = rng_u64(&keys);
     }
 }
 
+/* The points of a beam's square are a Hammersley set in its own order, so that photons that
+ * follow each other go nearly the same way through the scene. */
 bool emission_ray(const Beam *beam, uint64_t index, BeamRay *out)
 {
     uint32_t number = (uint32_t)index;
+    Rng shift = {beam->shift_key, index};
+    V2 u = {((double)index + rng_double(&shift)) / (double)beam->budget,
+            sample_inverse(number, beam->square_key)};
     double density;
-    V2 square = beam_warp(beam, sample_2d(number, beam->square_key), &density);
+    V2 square = beam_warp(beam, u, &density);
     V2 area = {0.5, 0.5};
     if (beam->light->has_area_photons)
         area = sample_2d(number, beam->area_key);

@@ -10,13 +10,13 @@
 #include "base/work.h"
 
 enum {
-    CELL_RAYS_SIDE = 2, /* pilot rays a cell, each way */
-    CELL_RAYS = CELL_RAYS_SIDE * CELL_RAYS_SIDE,
+    CELL_RAYS = 2,       /* pilot rays a cell, each way */
+    CELL_RAYS_FIRST = 4, /* in the first round, if the pilot may: what it misses is hard to mend */
     SIDE_MIN = 2,
-    SIDE_FIRST_MAX = 16,  /* cells a side of the first round */
+    SIDE_FIRST_MAX = 32,  /* cells a side of the first round */
     SIDE_SEARCH_MAX = 32, /* a beam in which nothing is found is tried up to this */
     SIDE_MAX = 128,
-    PILOT_PART = 8,    /* the pilot sends about this part of the photons */
+    PILOT_PART = 4,    /* the pilot sends about this part of the photons, but only to the target */
     PASS_PILOT = 0x710 /* random numbers, by map */
 };
 
@@ -25,7 +25,7 @@ typedef enum CellState { CELL_OPEN, CELL_SETTLED } CellState;
 typedef struct Cell {
     float flux;       /* that the cell would bring if it were the whole beam, summed RGB */
     float importance; /* how dense photons should be */
-    uint8_t hits;     /* of CELL_RAYS */
+    uint8_t hits, rays;
     uint8_t state;
 } Cell;
 
@@ -45,15 +45,14 @@ static float importance(const Emission *emission, Rgb flux, V3 at)
     return rgb_sum(flux) / (float)fmax(1, far);
 }
 
-/* Send ray `i` through a cell; returns the flux it finds. */
+/* Send ray `i` of n x n through a cell; returns the flux it finds. */
 static Rgb scout_ray(const Emission *emission, TraceThread *thread, const Beam *beam, int side,
-                     int cell, int i, V3 *at)
+                     int cell, int n, int i, V3 *at)
 {
-    uint64_t item = (emission_beam_number(emission, beam) << 40) + ((uint64_t)side << 24) +
-                    (uint64_t)(cell * CELL_RAYS + i);
+    uint64_t item = (emission_beam_number(emission, beam) << 40) + ((uint64_t)side << 28) +
+                    ((uint64_t)cell << 8) + (uint64_t)i;
     Rng rng = rng_at(emission->options->seed, PASS_PILOT + (uint32_t)emission->rules.map, item);
-    double u = (i % CELL_RAYS_SIDE + rng_double(&rng)) / CELL_RAYS_SIDE;
-    double v = (i / CELL_RAYS_SIDE + rng_double(&rng)) / CELL_RAYS_SIDE;
+    double u = (i % n + rng_double(&rng)) / n, v = (i / n + rng_double(&rng)) / n;
     V2 square = {(cell % side + u) / side, (cell / side + v) / side};
     V2 area = {rng_double(&rng), 0};
     area.v = rng_double(&rng);
@@ -65,15 +64,15 @@ static Rgb scout_ray(const Emission *emission, TraceThread *thread, const Beam *
 }
 
 static Cell scout_cell(const Emission *emission, TraceThread *thread, const Beam *beam, int side,
-                       int number)
+                       int number, int n)
 {
-    Cell cell = {0};
-    for (int i = 0; i < CELL_RAYS; i++) {
+    Cell cell = {.rays = (uint8_t)(n * n)};
+    for (int i = 0; i < n * n; i++) {
         V3 at = {0};
-        Rgb found = scout_ray(emission, thread, beam, side, number, i, &at);
+        Rgb found = scout_ray(emission, thread, beam, side, number, n, i, &at);
         if (rgb_is_black(found))
             continue;
-        cell.flux += rgb_sum(found) / CELL_RAYS;
+        cell.flux += rgb_sum(found) / (float)(n * n);
         cell.importance = fmaxf(cell.importance, importance(emission, found, at));
         cell.hits++;
     }
@@ -85,12 +84,14 @@ static int settle_cells(Grid *grid)
 {
     int side = grid->side, open = 0;
     for (int c = 0; c < side * side; c++) {
-        uint8_t hits = grid->cells[c].hits;
-        bool is_settled = hits == 0 || hits == CELL_RAYS;
+        const Cell *cell = &grid->cells[c];
+        bool is_full = cell->hits == cell->rays, is_settled = is_full || cell->hits == 0;
         for (int y = c / side - 1; y <= c / side + 1; y++)
             for (int x = c % side - 1; x <= c % side + 1; x++)
-                if (x >= 0 && y >= 0 && x < side && y < side)
-                    is_settled &= grid->cells[y * side + x].hits == hits;
+                if (x >= 0 && y >= 0 && x < side && y < side) {
+                    const Cell *near = &grid->cells[y * side + x];
+                    is_settled &= near->hits == (is_full ? near->rays : 0);
+                }
         grid->cells[c].state = is_settled ? CELL_SETTLED : CELL_OPEN;
         open += !is_settled;
     }
@@ -112,12 +113,12 @@ static bool grid_split(Grid *grid)
 
 /* Try the open cells; returns whether anything was found at all. */
 static bool scout_grid(const Emission *emission, TraceThread *thread, const Beam *beam,
-                       const Grid *grid)
+                       const Grid *grid, int n)
 {
     bool has_hits = false;
     for (int c = 0; c < grid->side * grid->side; c++) {
         if (grid->cells[c].state == CELL_OPEN)
-            grid->cells[c] = scout_cell(emission, thread, beam, grid->side, c);
+            grid->cells[c] = scout_cell(emission, thread, beam, grid->side, c, n);
         has_hits |= grid->cells[c].hits > 0;
     }
     return has_hits;
@@ -125,10 +126,10 @@ static bool scout_grid(const Emission *emission, TraceThread *thread, const Beam
 
 /* Try and split until the outline is fine enough; returns false when memory is out. */
 static bool refine_grid(const Emission *emission, TraceThread *thread, const Beam *beam,
-                        double rays, Grid *grid)
+                        double rays, int first, Grid *grid)
 {
-    for (;;) {
-        bool has_hits = scout_grid(emission, thread, beam, grid);
+    for (int n = first;; n = CELL_RAYS) {
+        bool has_hits = scout_grid(emission, thread, beam, grid, n);
         int open = settle_cells(grid), next = grid->side * 2;
         if (!has_hits) { /* something small may be there all the same */
             if (next > SIDE_SEARCH_MAX)
@@ -136,7 +137,7 @@ static bool refine_grid(const Emission *emission, TraceThread *thread, const Bea
             for (int c = 0; c < grid->side * grid->side; c++)
                 grid->cells[c].state = CELL_OPEN;
         } else {
-            rays -= (double)open * 4 * CELL_RAYS;
+            rays -= (double)open * 4 * CELL_RAYS * CELL_RAYS;
             if (open == 0 || next > SIDE_MAX || rays < 0)
                 return true;
         }
@@ -178,13 +179,15 @@ static void pilot_beam(void *ctx, size_t index, int thread)
     Pilot *pilot = ctx;
     Emission *emission = pilot->emission;
     Beam *beam = &emission->beams[index];
-    int side = SIDE_MIN;
-    while (side < SIDE_FIRST_MAX && (double)(side * side * 4 * CELL_RAYS) <= pilot->rays)
+    int side = SIDE_MIN, n = CELL_RAYS;
+    while (side < SIDE_FIRST_MAX && (double)(side * side * 4 * n * n) <= pilot->rays)
         side *= 2;
+    if ((double)(side * side) * CELL_RAYS_FIRST * CELL_RAYS_FIRST <= pilot->rays)
+        n = CELL_RAYS_FIRST;
     Grid grid = {side, mem_array((size_t)(side * side), sizeof(Cell))};
-    double rest = pilot->rays - side * side * CELL_RAYS;
+    double rest = pilot->rays - (double)(side * side) * n * n;
     pilot->is_short[index] =
-        !grid.cells || !refine_grid(emission, &emission->threads[thread], beam, rest, &grid) ||
+        !grid.cells || !refine_grid(emission, &emission->threads[thread], beam, rest, n, &grid) ||
         !take_cells(beam, &grid);
     mem_free(grid.cells);
 }
