@@ -7,7 +7,15 @@
 #include "trace/trace.h"
 
 /* Per light: what it was given and what became of it.  emitted = stored_paths + absorbed +
- * escaped + cut, exactly. */
+ * escaped + cut, exactly; so for the flux, to rounding.
+ *
+ * The language's light has as much flux as the way it goes is long, so a path's flux is what it
+ * would be at the surface where the path ended (for stored ones: was first stored); what it lost
+ * on the way to there counts as absorbed.  Paths that meet no surface have none.
+ *
+ * Which paths a map holds, and so what may be added up: caustic L S+ D, from a target on;
+ * global L S* D (S* D)+, every hit after a first diffuse reflection; the first diffuse hit itself
+ * is direct light, by shadow rays, or the caustic map's. */
 typedef struct LightBooks {
     double power; /* flux onto the targets (caustic) or into the scene (global), summed RGB */
     double share; /* of the budget, 0 to 1 */
