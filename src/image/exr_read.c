@@ -13,6 +13,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include <half.h>
+
 enum {
     READ_CHANNELS_MAX = 1024,
     PACK_RATIO_MAX = 1100 /* deflate packs 1032 to 1 at best, the other methods less */
@@ -22,7 +24,6 @@ enum {
 typedef struct ReadChannel {
     int layer;  /* -1: not read */
     int offset; /* floats from the start of a pixel */
-    bool is_uint;
 } ReadChannel;
 
 typedef struct ExrReader {
@@ -112,7 +113,6 @@ static Status make_layers(ExrReader *r, bool is_beauty)
         char layer[IMAGE_NAME_MAX];
         char letters[sizeof r->image->layers->channels];
         char letter;
-        r->channels[i].is_uint = r->list->entries[i].pixel_type == EXR_PIXEL_UINT;
         if (!split_name(name, layer, &letter)) {
             r->channels[i].layer = -1;
             if (is_beauty)
@@ -191,6 +191,50 @@ static Status check_header(ExrReader *r)
     return OK;
 }
 
+/* Return number `i` of a line of a channel as the file holds it, little-endian. */
+static float number_at(const uint8_t *line, int i, exr_pixel_type_t type)
+{
+    const uint8_t *at = line + (size_t)i * (type == EXR_PIXEL_HALF ? 2 : 4);
+    if (type == EXR_PIXEL_HALF)
+        return imath_half_to_float((uint16_t)(at[0] | at[1] << 8));
+    uint32_t bits =
+        (uint32_t)at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
+    float number;
+    memcpy(&number, &bits, sizeof number);
+    return type == EXR_PIXEL_UINT ? (float)bits : number;
+}
+
+/* Take a chunk apart: line by line, channel by channel.  The library's own routine for files of
+ * four half channels mixes them up (3.1.5). */
+static exr_result_t unpack(exr_decode_pipeline_t *decoder)
+{
+    /* What is not compressed stays where it was read to. */
+    bool is_packed = !decoder->unpacked_buffer;
+    const uint8_t *from = is_packed ? decoder->packed_buffer : decoder->unpacked_buffer;
+    uint64_t size = is_packed ? decoder->chunk.packed_size : decoder->chunk.unpacked_size;
+    uint64_t needed = 0;
+    for (int16_t c = 0; c < decoder->channel_count; c++)
+        needed += (uint64_t)decoder->channels[c].width * (uint64_t)decoder->chunk.height *
+                  (uint64_t)decoder->channels[c].bytes_per_element;
+    if (!from || size < needed)
+        return EXR_ERR_CORRUPT_CHUNK;
+    for (int line = 0; line < decoder->chunk.height; line++) {
+        for (int16_t c = 0; c < decoder->channel_count; c++) {
+            const exr_coding_channel_info_t *info = &decoder->channels[c];
+            exr_pixel_type_t type = (exr_pixel_type_t)info->data_type;
+            uint8_t *to = info->decode_to_ptr;
+            if (to)
+                to += (ptrdiff_t)line * info->user_line_stride;
+            for (int i = 0; to && i < info->width; i++, to += info->user_pixel_stride) {
+                float number = number_at(from, i, type);
+                memcpy(to, &number, sizeof number);
+            }
+            from += (size_t)info->width * (size_t)info->bytes_per_element;
+        }
+    }
+    return EXR_ERR_SUCCESS;
+}
+
 /* Point the decoder's channels at the pixel (x, y) of our layers. */
 static void aim_decoder(const ExrReader *r, exr_decode_pipeline_t *decoder, int x, int y)
 {
@@ -206,7 +250,7 @@ static void aim_decoder(const ExrReader *r, exr_decode_pipeline_t *decoder, int 
         int stride = layer->channel_count * (int)sizeof(float);
         float *to = layer->pixels + pixel * (size_t)layer->channel_count + channel->offset;
         info->decode_to_ptr = (uint8_t *)to;
-        info->user_data_type = channel->is_uint ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
+        info->user_data_type = EXR_PIXEL_FLOAT;
         info->user_bytes_per_element = sizeof(float);
         info->user_pixel_stride = stride;
         info->user_line_stride = stride * r->image->width;
@@ -224,6 +268,8 @@ static exr_result_t decode_chunk(const ExrReader *r, exr_decode_pipeline_t *deco
         return EXR_ERR_INVALID_ATTR;
     aim_decoder(r, decoder, x, y);
     code = exr_decoding_choose_default_routines(r->context, 0, decoder);
+    if (decoder->unpack_and_convert_fn) /* else floats are read straight to their place */
+        decoder->unpack_and_convert_fn = unpack;
     return code == EXR_ERR_SUCCESS ? exr_decoding_run(r->context, 0, decoder) : code;
 }
 
@@ -259,23 +305,6 @@ static exr_result_t decode_tiles(const ExrReader *r, exr_decode_pipeline_t *deco
     return code;
 }
 
-/* Channels of whole numbers were decoded as such: turn them into floats in place. */
-static void convert_uints(const ExrReader *r)
-{
-    size_t count = (size_t)r->image->width * (size_t)r->image->height;
-    for (int c = 0; c < r->list->num_channels; c++) {
-        if (!r->channels[c].is_uint || r->channels[c].layer < 0)
-            continue;
-        const ImageLayer *layer = &r->image->layers[r->channels[c].layer];
-        float *at = layer->pixels + r->channels[c].offset;
-        for (size_t i = 0; i < count; i++, at += layer->channel_count) {
-            uint32_t bits;
-            memcpy(&bits, at, sizeof bits);
-            *at = (float)bits;
-        }
-    }
-}
-
 static Status read_pixels(ExrReader *r)
 {
     exr_storage_t storage = EXR_STORAGE_SCANLINE;
@@ -287,7 +316,6 @@ static Status read_pixels(ExrReader *r)
         exr_decoding_destroy(r->context, &decoder);
     if (code != EXR_ERR_SUCCESS)
         return refuse_code(r, code);
-    convert_uints(r);
     return OK;
 }
 
