@@ -26,7 +26,7 @@ UNIT     := $(patsubst %.c,$(B)/%,$(wildcard tests/unit/*_test.c tests/physics/*
             tests/hard/*_test.c tests/fault/*_test.c))
 BENCH    := $(patsubst %.cpp,$(B)/%,$(wildcard tests/bench/*_bench.cpp)) \
             $(patsubst %.c,$(B)/%,$(wildcard tests/bench/*_bench.c))
-SHTESTS   = $(wildcard tests/house/*.t tests/lang/*.t tests/cli/*.t tests/image/*.t)
+SHTESTS   = $(wildcard tests/house/*.t tests/cli/*.t tests/image/*.t)
 
 PKGS     := OpenEXR OpenColorIO libpng libjpeg
 PKGCF    := $(shell pkg-config --cflags $(PKGS) 2>/dev/null | sed 's/-I/-isystem /g')

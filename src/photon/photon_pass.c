@@ -6,9 +6,6 @@
 #include "photon/emission_int.h"
 #include "photon/gather.h"
 
-/* Photons of an estimate when the scene does not say. */
-enum { GATHER_MAX_DEFAULT = 100 };
-
 static const FeatureId map_feature[MAP_COUNT] = {FEATURE_CAUSTIC_MAP, FEATURE_GLOBAL_MAP};
 static const StatId map_counter[MAP_COUNT] = {STAT_PHOTONS_CAUSTIC, STAT_PHOTONS_GLOBAL};
 static const char *const map_name[MAP_COUNT] = {"caustic", "global"};
@@ -99,7 +96,7 @@ static Status make_map(const Tracer *tracer, MapKind kind, const PhotonOptions *
 static void set_radii(const Tracer *tracer, PhotonMaps *maps)
 {
     const PhotonSettings *settings = &tracer_scene(tracer)->settings.photons;
-    int most = settings->gather_max > 0 ? settings->gather_max : GATHER_MAX_DEFAULT;
+    int most = gather_most(settings);
     if (maps->caustic)
         maps->caustic_radius =
             settings->radius > 0 ? settings->radius : photon_map_radius(maps->caustic, most);

@@ -34,7 +34,7 @@ typedef struct Plan {
     bool *light_makes_caustics; /* per light: takes part in the caustic map */
     bool is_unlit;              /* quality 0 and 1: surfaces show their pigment, nothing more */
     bool has_ambient;           /* finish{ambient} counts (not beside real indirect light) */
-    long caustic_photons;       /* to emit towards targets, all lights; 0: from spacing */
+    long caustic_photons;       /* the count of photons{}, expected to be stored; 0: by spacing */
     long global_photons;        /* to emit into the scene, all lights */
 } Plan;
 

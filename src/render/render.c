@@ -12,9 +12,6 @@
  * on another one: walls of a corner do not light each other. */
 #define GATHER_NORMAL_COSINE 0.5
 
-/* Photons of an estimate when photons{} does not say. */
-enum { GATHER_MAX_DEFAULT = 100 };
-
 /* --- photons -------------------------------------------------------------------------------- */
 
 static void photon_progress(void *ctx, double fraction)
@@ -40,9 +37,8 @@ static bool needs_photons(const Plan *plan)
 static GatherLimits gather_limits(const SceneSettings *settings, double radius)
 {
     const PhotonSettings *photons = &settings->photons;
-    int most = photons->gather_max > 0 ? photons->gather_max : GATHER_MAX_DEFAULT;
     return (GatherLimits){.min_photons = photons->gather_min,
-                          .max_photons = most,
+                          .max_photons = gather_most(photons),
                           .max_radius = radius,
                           .shape = settings->pms.gather_shape,
                           .kernel = settings->pms.kernel,
