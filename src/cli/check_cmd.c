@@ -13,12 +13,8 @@ static Status check_one(const Args *args, int index)
     return OK;
 }
 
-static Status check_all(Args *args, int argc, char **argv)
+Status check_cmd(Args *args)
 {
-    bool is_done;
-    TRY(args_parse(args, "check", argc, argv, &is_done));
-    if (is_done)
-        return OK;
     if (args->operand_count == 0)
         return diag_fail(args->diag, ERR_USAGE, "pms check wants a scene file");
     Status worst = OK;
@@ -28,16 +24,4 @@ static Status check_all(Args *args, int argc, char **argv)
             worst = status;
     }
     return worst;
-}
-
-int check_cmd(int argc, char **argv)
-{
-    Diag diag;
-    diag_init(&diag, NULL, NULL);
-    Args args = {.arena = arena_new(), .diag = &diag};
-    Status status =
-        args.arena ? check_all(&args, argc, argv) : diag_no_memory(&diag, "the command line");
-    arena_free(args.arena);
-    diag_done(&diag);
-    return status_exit_code(status);
 }

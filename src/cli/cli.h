@@ -91,8 +91,8 @@ void json_number(FILE *file, double number);
 /* Print the counters, times and photon books of a render as JSON. */
 void stats_print_json(FILE *file, const Scene *scene, const RenderResult *result);
 
-/* The commands; each returns the exit code.  argv[0] is the program. */
-#define X(name, function, bit, operands, text) int function(int argc, char **argv);
+/* The commands: each does what its parsed command line says. */
+#define X(name, function, bit, operands, text) Status function(Args *args);
 #include "cli/command.def"
 #undef X
 

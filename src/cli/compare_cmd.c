@@ -32,12 +32,8 @@ static Status compare_loaded(const Args *args, Image *a, Image *b)
     return thresholds_check(args->diag, &limits, &result);
 }
 
-static Status compare(Args *args, int argc, char **argv)
+Status compare_cmd(Args *args)
 {
-    bool is_done;
-    TRY(args_parse(args, "compare", argc, argv, &is_done));
-    if (is_done)
-        return OK;
     TRY(args_want_operands(args, 2, "two images"));
     Image a, b;
     TRY(image_load(args->diag, args->operands[0], &a));
@@ -47,16 +43,4 @@ static Status compare(Args *args, int argc, char **argv)
     image_done(&a);
     image_done(&b);
     return status;
-}
-
-int compare_cmd(int argc, char **argv)
-{
-    Diag diag;
-    diag_init(&diag, NULL, NULL);
-    Args args = {.arena = arena_new(), .diag = &diag};
-    Status status =
-        args.arena ? compare(&args, argc, argv) : diag_no_memory(&diag, "the command line");
-    arena_free(args.arena);
-    diag_done(&diag);
-    return status_exit_code(status);
 }

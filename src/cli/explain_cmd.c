@@ -114,12 +114,8 @@ static Status explain_scene(const Args *args, const Scene *scene)
     return OK;
 }
 
-static Status explain(Args *args, int argc, char **argv)
+Status explain_cmd(Args *args)
 {
-    bool is_done;
-    TRY(args_parse(args, "explain", argc, argv, &is_done));
-    if (is_done)
-        return OK;
     TRY(args_want_operands(args, 1, "one scene file"));
     Scene *scene;
     double seconds;
@@ -127,16 +123,4 @@ static Status explain(Args *args, int argc, char **argv)
     Status status = explain_scene(args, scene);
     scene_free(scene);
     return status;
-}
-
-int explain_cmd(int argc, char **argv)
-{
-    Diag diag;
-    diag_init(&diag, NULL, NULL);
-    Args args = {.arena = arena_new(), .diag = &diag};
-    Status status =
-        args.arena ? explain(&args, argc, argv) : diag_no_memory(&diag, "the command line");
-    arena_free(args.arena);
-    diag_done(&diag);
-    return status_exit_code(status);
 }

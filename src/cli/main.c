@@ -8,7 +8,7 @@
 
 typedef struct Command {
     const char *name;
-    int (*run)(int argc, char **argv);
+    Status (*run)(Args *args);
 } Command;
 
 static const Command commands[] = {
@@ -47,6 +47,26 @@ static int end(int code)
     return code ? code : status_exit_code(ERR_FILE);
 }
 
+static Status parse_and_run(const Command *command, Args *args, int argc, char **argv)
+{
+    bool is_done;
+    if (!args->arena)
+        return diag_no_memory(args->diag, "the command line");
+    TRY(args_parse(args, command->name, argc, argv, &is_done));
+    return is_done ? OK : command->run(args);
+}
+
+static int run(const Command *command, int argc, char **argv)
+{
+    Diag diag;
+    diag_init(&diag, NULL, NULL);
+    Args args = {.arena = arena_new(), .diag = &diag};
+    Status status = parse_and_run(command, &args, argc, argv);
+    arena_free(args.arena);
+    diag_done(&diag);
+    return end(status_exit_code(status));
+}
+
 int main(int argc, char **argv)
 {
     catch_signals();
@@ -54,7 +74,7 @@ int main(int argc, char **argv)
         if (strcmp(argv[1], commands[i].name) != 0)
             continue;
         argv[1] = argv[0];
-        return end(commands[i].run(argc - 1, argv + 1));
+        return run(&commands[i], argc - 1, argv + 1);
     }
-    return end(render_cmd(argc, argv));
+    return run(&commands[0], argc, argv); /* render */
 }

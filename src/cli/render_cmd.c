@@ -73,12 +73,8 @@ static Status render_loaded(Args *args, const Scene *scene, double parse_seconds
     return status;
 }
 
-static Status render(Args *args, int argc, char **argv)
+Status render_cmd(Args *args)
 {
-    bool is_done;
-    TRY(args_parse(args, "render", argc, argv, &is_done));
-    if (is_done)
-        return OK;
     TRY(args_want_operands(args, 1, "one scene file"));
     if (args->output_count == 0)
         TRY(default_outputs(args));
@@ -90,16 +86,4 @@ static Status render(Args *args, int argc, char **argv)
         status = render_loaded(args, scene, seconds);
     scene_free(scene);
     return status;
-}
-
-int render_cmd(int argc, char **argv)
-{
-    Diag diag;
-    diag_init(&diag, NULL, NULL);
-    Args args = {.arena = arena_new(), .diag = &diag};
-    Status status =
-        args.arena ? render(&args, argc, argv) : diag_no_memory(&diag, "the command line");
-    arena_free(args.arena);
-    diag_done(&diag);
-    return status_exit_code(status);
 }

@@ -154,12 +154,8 @@ static void remove_folder(const char *folder)
     rmdir(folder);
 }
 
-static Status validate(Args *args, int argc, char **argv)
+Status validate_cmd(Args *args)
 {
-    bool is_done;
-    TRY(args_parse(args, "validate", argc, argv, &is_done));
-    if (is_done)
-        return OK;
     TRY(args_want_operands(args, 1, "one scene file"));
     /* povray is allowed to write in few places; /tmp is one of them. */
     const char *temp = getenv("TMPDIR");
@@ -172,16 +168,4 @@ static Status validate(Args *args, int argc, char **argv)
     Status status = validate_in(args, folder);
     remove_folder(folder);
     return status;
-}
-
-int validate_cmd(int argc, char **argv)
-{
-    Diag diag;
-    diag_init(&diag, NULL, NULL);
-    Args args = {.arena = arena_new(), .diag = &diag};
-    Status status =
-        args.arena ? validate(&args, argc, argv) : diag_no_memory(&diag, "the command line");
-    arena_free(args.arena);
-    diag_done(&diag);
-    return status_exit_code(status);
 }
