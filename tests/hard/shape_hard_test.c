@@ -12,31 +12,7 @@
 
 __extension__ typedef __float128 Quad;
 
-static Arena *arena;
-static ShapeScratch *scratch;
-
-static int set_up(void **state)
-{
-    (void)state;
-    arena = arena_new();
-    scratch = shape_scratch_new();
-    return !arena || !scratch;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    arena_free(arena);
-    shape_scratch_free(scratch);
-    return 0;
-}
-
-static V3 random_dir(Rng *rng)
-{
-    V2 u = {rng_double(rng), 0};
-    u.v = rng_double(rng);
-    return v3_unit(warp_sphere(u));
-}
+#include "../unit/shape_kit.h"
 
 /* --- the oracle: the implicit function of a part of a leaf, along the ray, in quad --------- */
 

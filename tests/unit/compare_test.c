@@ -12,21 +12,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-static char last_message[4096];
-
-static void keep(void *ctx, const char *text)
-{
-    (void)ctx;
-    snprintf(last_message, sizeof last_message, "%s", text);
-}
-
-static Diag *quiet(void)
-{
-    static Diag diag;
-    diag_init(&diag, keep, NULL);
-    last_message[0] = 0;
-    return &diag;
-}
+#include "quiet.h"
 
 static void assert_near(double found, double wanted, double tolerance)
 {

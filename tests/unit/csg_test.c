@@ -11,24 +11,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-static Arena *arena;
-static ShapeScratch *scratch;
-
-static int set_up(void **state)
-{
-    (void)state;
-    arena = arena_new();
-    scratch = shape_scratch_new();
-    return !arena || !scratch;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    arena_free(arena);
-    shape_scratch_free(scratch);
-    return 0;
-}
+#include "shape_kit.h"
 
 static Shape *csg(ShapeKind kind, int count, ...)
 {

@@ -19,23 +19,9 @@
 #include <cmocka.h>
 #include <openexr.h>
 
+#include "quiet.h"
+
 static char folder[] = "/tmp/pms_exr_XXXXXX";
-static char last_message[4096];
-
-static void keep(void *ctx, const char *text)
-{
-    (void)ctx;
-    snprintf(last_message, sizeof last_message, "%s", text);
-}
-
-static Diag *quiet(void)
-{
-    static Diag diag;
-    diag_init(&diag, keep, NULL);
-    last_message[0] = 0;
-    return &diag;
-}
-
 static const char *in_folder(const char *name)
 {
     static char path[2][256];

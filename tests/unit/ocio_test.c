@@ -13,21 +13,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 
-static char last_message[4096];
-
-static void keep(void *ctx, const char *text)
-{
-    (void)ctx;
-    snprintf(last_message, sizeof last_message, "%s", text);
-}
-
-static Diag *quiet(void)
-{
-    static Diag diag;
-    diag_init(&diag, keep, NULL);
-    last_message[0] = 0;
-    return &diag;
-}
+#include "quiet.h"
 
 static int open_own(void **state)
 {

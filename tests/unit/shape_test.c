@@ -10,24 +10,7 @@
 #include <stddef.h>
 #include <cmocka.h>
 
-static Arena *arena;
-static ShapeScratch *scratch;
-
-static int set_up(void **state)
-{
-    (void)state;
-    arena = arena_new();
-    scratch = shape_scratch_new();
-    return !arena || !scratch;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    arena_free(arena);
-    shape_scratch_free(scratch);
-    return 0;
-}
+#include "shape_kit.h"
 
 static void assert_near(V3 a, V3 b, double tolerance)
 {
