@@ -20,6 +20,11 @@ enum { RADIUS_SAMPLES_MIN = 100, RADIUS_SAMPLES_MAX = 1000, RADIUS_SAMPLES_PART 
  * mean density, as a focus sets it, the dim parts of a caustic would be single specks. */
 #define RADIUS_QUANTILE 0.8
 
+int gather_most(const PhotonSettings *photons)
+{
+    return photons->gather_max > 0 ? photons->gather_max : GATHER_LIMITS_DEFAULT.max_photons;
+}
+
 GatherScratch *gather_scratch_new(void)
 {
     return mem_alloc(sizeof(GatherScratch));

@@ -44,10 +44,7 @@ typedef struct GatherLimits {
                     .normal_cosine = 0.5})
 
 /* Return the most photons an estimate takes: what photons{} says, or the default. */
-static inline int gather_most(const PhotonSettings *photons)
-{
-    return photons->gather_max > 0 ? photons->gather_max : GATHER_LIMITS_DEFAULT.max_photons;
-}
+int gather_most(const PhotonSettings *photons);
 
 /* One photon of an estimate, decoded: power already weighted by kernel and area, so that the
  * sum over all is the irradiance. */

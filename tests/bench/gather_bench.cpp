@@ -20,6 +20,7 @@ extern "C" {
 #include "base/stats.h"
 #include "photon/gather.h"
 }
+#pragma GCC diagnostic pop
 
 namespace
 {

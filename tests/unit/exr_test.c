@@ -19,17 +19,8 @@
 #include <cmocka.h>
 #include <openexr.h>
 
+#include "folder.h"
 #include "quiet.h"
-
-static char folder[] = "/tmp/pms_exr_XXXXXX";
-static const char *in_folder(const char *name)
-{
-    static char path[2][256];
-    static int next;
-    next = !next;
-    snprintf(path[next], sizeof path[next], "%s/%s", folder, name);
-    return path[next];
-}
 
 static float value_at(size_t i)
 {
@@ -148,24 +139,6 @@ static void numbers_that_are_not_survive(void **state)
     assert_true(isinf(back.layers[0].pixels[1]));
     image_done(&image);
     image_done(&back);
-}
-
-static size_t slurp(const char *path, char **bytes)
-{
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
-    *bytes = calloc(1, 1 << 20);
-    size_t size = fread(*bytes, 1, 1 << 20, file);
-    fclose(file);
-    return size;
-}
-
-static void spill(const char *path, const char *bytes, size_t size)
-{
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(bytes, 1, size, file), size);
-    fclose(file);
 }
 
 static const MetaItem fields[] = {
@@ -460,20 +433,6 @@ static void every_allocation_may_fail(void **state)
     }
     image_done(&back);
     image_done(&image);
-}
-
-static int make_folder(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    char command[300];
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
 }
 
 int main(void)

@@ -19,17 +19,8 @@
 #include <unistd.h>
 #include <cmocka.h>
 
+#include "folder.h"
 #include "quiet.h"
-
-static char folder[] = "/tmp/pms_png_XXXXXX";
-static const char *in_folder(const char *name)
-{
-    static char path[2][256];
-    static int next;
-    next = !next;
-    snprintf(path[next], sizeof path[next], "%s/%s", folder, name);
-    return path[next];
-}
 
 static const MetaItem fields[] = {{"Software", "pms"}, {"pms.command", "pms a.pms\nline two"}};
 static const Meta meta = {fields, 2};
@@ -143,24 +134,6 @@ static void files_of_others_are_read(void **state)
     }
 }
 
-static size_t slurp(const char *path, char **bytes)
-{
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
-    *bytes = calloc(1, 1 << 20);
-    size_t size = fread(*bytes, 1, 1 << 20, file);
-    fclose(file);
-    return size;
-}
-
-static void spill(const char *path, const char *bytes, size_t size)
-{
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(bytes, 1, size, file), size);
-    fclose(file);
-}
-
 static void refuses(const char *path, const char *message)
 {
     Image back;
@@ -265,20 +238,6 @@ static void every_allocation_may_fail(void **state)
         assert_true(n < 1000);
     }
     image_done(&back);
-}
-
-static int make_folder(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    char command[300];
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
 }
 
 int main(void)

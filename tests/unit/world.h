@@ -109,6 +109,12 @@ static inline const Texture *clear(World *w)
 
 static const Interior air = {.ior = 1};
 
+/* Absorption that is exponential: exp(-(1 - color) d) after d units. */
+static inline Interior fading(Rgb color)
+{
+    return (Interior){.ior = 1, .fade_distance = 1, .fade_power = 1000, .fade_color = color};
+}
+
 static inline Shape *box(World *w, V3 lo, V3 hi)
 {
     return shape_box(w->scene.arena, lo, hi);
@@ -155,6 +161,17 @@ static inline Rgb look(World *w)
     Interiors inside;
     interiors_at(w->tracer, ray.o, &inside);
     return look_along(w, &ray, RAY_CAMERA, &inside, 0, 1, false);
+}
+
+/* Half a step of 16 bits, five digits, float colours. */
+#define PIXEL_TOLERANCE 1.6e-5
+
+static inline void check_rgb(Rgb c, double r, double g, double b)
+{
+    if (!(fabs((double)c.r - r) < PIXEL_TOLERANCE && fabs((double)c.g - g) < PIXEL_TOLERANCE &&
+          fabs((double)c.b - b) < PIXEL_TOLERANCE))
+        fail_msg("got %.5f %.5f %.5f, wanted %.5f %.5f %.5f", (double)c.r, (double)c.g, (double)c.b,
+                 r, g, b);
 }
 
 #endif
