@@ -79,18 +79,6 @@ static void weigh(FoundPhotons *found, GatherKernel kernel, float radius2)
     }
 }
 
-/* Find what an estimate is made of; see GatherLimits and gather.h. */
-static float find(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
-                  GatherScratch *scratch)
-{
-    float radius2;
-    photon_search(map, p, n, limits, limits->max_photons, limits->max_radius, scratch, &radius2);
-    if (scratch->found.count + 1 < (size_t)limits->min_photons && isfinite(limits->max_radius))
-        photon_search(map, p, n, limits, limits->min_photons, limits->max_radius * GATHER_WIDEN,
-                      scratch, &radius2);
-    return radius2;
-}
-
 /* Return the power step of a stored photon: 2^(exponent - RGBE_BIAS); the exponents in use
  * make it a normal float, black photons have no mantissa to multiply. */
 static inline float rgbe_step(uint32_t rgbe)
@@ -113,7 +101,8 @@ static inline Rgb rgbe_power(uint32_t rgbe)
 int photon_gather(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
                   GatherScratch *scratch, Rgb *out)
 {
-    float radius2 = find(map, p, n, limits, scratch);
+    float radius2;
+    photon_search(map, p, n, limits, scratch, &radius2);
     FoundPhotons *found = &scratch->found;
     *out = RGB_BLACK;
     if (!(radius2 > 0) || found->count == 0)
@@ -135,7 +124,8 @@ int photon_gather(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
 int photon_gather_list(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
                        GatherScratch *scratch, const GatheredPhoton **out)
 {
-    float radius2 = find(map, p, n, limits, scratch);
+    float radius2;
+    photon_search(map, p, n, limits, scratch, &radius2);
     FoundPhotons *found = &scratch->found;
     *out = scratch->list;
     if (!(radius2 > 0))
@@ -164,7 +154,9 @@ int photon_gather_list(const PhotonMap *map, V3 p, V3 n, const GatherLimits *lim
 int photon_nearest(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
                    GatherScratch *scratch, const uint32_t **out, double *radius2)
 {
-    *radius2 = (double)find(map, p, n, limits, scratch);
+    float found2;
+    photon_search(map, p, n, limits, scratch, &found2);
+    *radius2 = (double)found2;
     *out = scratch->found.index;
     return (int)scratch->found.count;
 }

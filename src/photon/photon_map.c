@@ -240,28 +240,22 @@ static void fill_blocks(void *ctx, size_t index, int thread)
         fill_block(build, i);
 }
 
-/* Make the keys of all photons that are somewhere; returns the largest coordinate. */
-static float make_keys(Build *build, size_t count)
+/* Make the keys of all photons that are somewhere. */
+static void make_keys(Build *build, size_t count)
 {
     size_t kept = 0;
-    float most = 0;
     for (size_t i = 0; i < count; i++) {
         const float *pos = build->photons[i].pos;
-        float largest = fmaxf(fabsf(pos[0]), fmaxf(fabsf(pos[1]), fabsf(pos[2])));
-        bool is_finite = isfinite(pos[0]) && isfinite(pos[1]) && isfinite(pos[2]);
         build->keys[kept] = (Key){{pos[0], pos[1], pos[2]}, (uint32_t)i};
-        kept += is_finite;
-        most = is_finite && largest > most ? largest : most;
+        kept += isfinite(pos[0]) && isfinite(pos[1]) && isfinite(pos[2]);
     }
     build->map->count = kept;
-    return most;
 }
 
 static Status map_fill(Build *build, size_t count, int threads)
 {
     PhotonMap *map = build->map;
-    /* Replacing two mantissa bits moves a plane by at most 3 units in its last place. */
-    map->slack = fmaxf(make_keys(build, count) * 0x1p-21f, 0x1p-146f);
+    make_keys(build, count);
     map->block_count = (uint32_t)((map->count + BLOCK_PHOTONS - 1) / BLOCK_PHOTONS);
     if (map->block_count == 0)
         return OK;

@@ -16,6 +16,10 @@ typedef struct PhotonBlock {
 
 static_assert(sizeof(PhotonBlock) == 20 * BLOCK_PHOTONS, "20 bytes a photon");
 
+/* Replacing two mantissa bits moves a split plane by at most 3 units in its last place. */
+#define SPLIT_ERROR 0x1p-21f
+#define SPLIT_ERROR_LEAST 0x1p-146f /* of planes too close to 0 for a full mantissa */
+
 /* Nodes are numbered as in a heap: the children of i are 2i+1 and 2i+2.  With m blocks the
  * inner nodes are 0 .. m-2, each a split plane whose two lowest mantissa bits are replaced by
  * its axis; the rest are blocks (block_of_node). */
@@ -25,7 +29,6 @@ struct PhotonMap {
     size_t count;        /* photons */
     uint32_t block_count;
     uint32_t level_blocks; /* largest power of two not above block_count */
-    float slack;           /* bound on the distance of a split plane from where it should be */
     V3 center;
     void *memory; /* of blocks */
 };

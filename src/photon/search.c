@@ -257,7 +257,7 @@ static void walk(Search *search)
             bool is_right = delta >= 0;
             Cell far = cell;
             far.node = 2 * cell.node + (is_right ? 1 : 2);
-            float off = fabsf(delta) - map->slack;
+            float off = fabsf(delta) - (fabsf(split) * SPLIT_ERROR + SPLIT_ERROR_LEAST);
             far.off[axis] = off > 0 ? off : 0;
             far.distance2 =
                 far.off[0] * far.off[0] + far.off[1] * far.off[1] + far.off[2] * far.off[2];
@@ -290,30 +290,36 @@ static float *guess_at(GatherScratch *scratch, const PhotonMap *map)
     return &scratch->guess_radius2[0];
 }
 
-/* Walk with a growing radius until k photons are found or `most` is reached. */
-static void search_nearest(Search *search, float most, float *guess)
+/* Return the squared radius to try next, when `count` photons were within `tried`. */
+static float wider_than(float tried, size_t count, size_t wanted)
+{
+    float factor = 1.5f * (float)wanted / (float)(count + 1);
+    return tried * fminf(fmaxf(factor, 2), 64);
+}
+
+/* Walk with a radius growing from `start` until k photons are found, or `most` is reached; returns
+ * whether they were. */
+static bool search_nearest(Search *search, float start, float most)
 {
     FoundPhotons *found = search->found;
-    search->radius2 = fminf(*guess, most);
+    search->radius2 = fminf(start, most);
     for (;;) {
         float tried = search->radius2;
         found->count = 0;
         walk(search);
         if (found->count >= search->wanted || !(tried < most))
             break;
-        float factor = 1.5f * (float)search->wanted / (float)(found->count + 1);
-        float wider = tried * fminf(fmaxf(factor, 2), 64);
+        float wider = wider_than(tried, found->count, search->wanted);
         search->radius2 = wider > tried ? fminf(wider, most) : most;
     }
-    if (found->count >= search->wanted) {
-        search->radius2 =
-            kth_smallest(found->distance2, found->count, search->wanted, search->radius2);
-        *guess = search->radius2 * GUESS_FACTOR;
-        keep_nearest(found, search->radius2, search->wanted - 1);
-    } else {
+    if (found->count < search->wanted) {
         search->radius2 = most;
-        *guess = most;
+        return false;
     }
+    search->radius2 =
+        kth_smallest(found->distance2, found->count, search->wanted, search->radius2);
+    keep_nearest(found, search->radius2, search->wanted - 1);
+    return true;
 }
 
 static bool has_room(FoundPhotons *found, size_t capacity)
@@ -332,36 +338,49 @@ static bool has_room(FoundPhotons *found, size_t capacity)
     return index != NULL;
 }
 
-void photon_search(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits, int max_photons,
-                   double radius, GatherScratch *scratch, float *radius2)
+static Search make_search(const PhotonMap *map, V3 q, V3 n, const GatherLimits *limits,
+                          FoundPhotons *found)
+{
+    double cosine = limits->normal_cosine;
+    return (Search){.map = map,
+                    .found = found,
+                    .q = {(float)q.x, (float)q.y, (float)q.z},
+                    .n = {(float)n.x, (float)n.y, (float)n.z},
+                    .slab = limits->shape == GATHER_DISK ? (float)(1 / (GATHER_SLAB * GATHER_SLAB))
+                                                         : 0,
+                    .cosine2 = (float)(cosine * fabs(cosine)),
+                    .has_normals = cosine > -1};
+}
+
+/* Return k as a number of photons there may be room for: when memory is out, fewer. */
+static size_t photons_wanted(const FoundPhotons *found, int k)
+{
+    size_t wanted = k > 0 ? (size_t)k : SIZE_MAX;
+    return wanted < SIZE_MAX && wanted > found->capacity / 2 ? found->capacity / 2 : wanted;
+}
+
+void photon_search(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
+                   GatherScratch *scratch, float *radius2)
 {
     FoundPhotons *found = &scratch->found;
     V3 q = v3_sub(p, map->center);
-    float most = (float)(radius * radius);
+    float most = (float)(limits->max_radius * limits->max_radius);
+    int k = limits->max_photons > limits->min_photons ? limits->max_photons : limits->min_photons;
     found->count = 0;
     *radius2 = most;
-    size_t wanted = max_photons > 0 ? (size_t)max_photons : SIZE_MAX;
-    size_t room = wanted < SIZE_MAX ? wanted * ROOM_FACTOR + ROOM_MIN : ROOM_MIN;
-    if (!has_room(found, room) && found->capacity < ROOM_MIN)
+    if (!has_room(found, (size_t)k * ROOM_FACTOR + ROOM_MIN) && found->capacity < ROOM_MIN)
         return;
     if (map->block_count == 0 || !v3_is_finite(q) || !(most >= 0))
         return;
-    if (wanted < SIZE_MAX && wanted > found->capacity / 2) /* memory was out */
-        wanted = found->capacity / 2;
-    double cosine = limits->normal_cosine;
-    Search search = {.map = map,
-                     .found = found,
-                     .q = {(float)q.x, (float)q.y, (float)q.z},
-                     .n = {(float)n.x, (float)n.y, (float)n.z},
-                     .slab = limits->shape == GATHER_DISK ? (float)(1 / (GATHER_SLAB * GATHER_SLAB))
-                                                          : 0,
-                     .cosine2 = (float)(cosine * fabs(cosine)),
-                     .has_normals = cosine > -1,
-                     .wanted = wanted,
-                     .radius2 = most};
-    if (wanted == SIZE_MAX)
-        walk(&search);
-    else
-        search_nearest(&search, most, guess_at(scratch, map));
+    Search search = make_search(map, q, n, limits, found);
+    search.wanted = photons_wanted(found, limits->max_photons);
+    float *guess = guess_at(scratch, map), start = search.wanted < SIZE_MAX ? *guess : most;
+    bool is_full = search_nearest(&search, start, most);
+    *guess = is_full ? search.radius2 * GUESS_FACTOR : most;
+    if (!is_full && found->count + 1 < (size_t)limits->min_photons && isfinite(most)) {
+        search.wanted = photons_wanted(found, limits->min_photons);
+        start = wider_than(most, found->count, search.wanted);
+        search_nearest(&search, start, most * (GATHER_WIDEN * GATHER_WIDEN));
+    }
     *radius2 = search.radius2;
 }

@@ -21,10 +21,9 @@ struct GatherScratch {
     float guess_radius2[GATHER_GUESSES];
 };
 
-/* Leave in scratch->found the photons an estimate of at most `max_photons` within `radius` is
- * made from, in the order the tree is walked; *radius2 is the square of the radius they fill.
- * max_photons 0: all of them. */
-void photon_search(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits, int max_photons,
-                   double radius, GatherScratch *scratch, float *radius2);
+/* Leave in scratch->found the photons an estimate is made from, in the order the tree is walked;
+ * *radius2 is the square of the radius they fill. */
+void photon_search(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
+                   GatherScratch *scratch, float *radius2);
 
 #endif
