@@ -4,6 +4,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/work.h"
 #include "image/exr.h"
 #include "image/ocio.h"
 #include "image/png_file.h"
@@ -132,6 +133,14 @@ static Status write_png(const Args *args, const Image *image, const char *path, 
     return status;
 }
 
+static Status write_exr(const Args *args, const Image *image, const char *path, const Meta *meta)
+{
+    long threads;
+    TRY(args_int(args, OPT_THREADS, 1, WORK_THREADS_MAX, work_thread_count(), &threads));
+    ExrOptions options = {.is_half = args_has(args, OPT_HALF), .threads = (int)threads};
+    return exr_write(args->diag, path, image, meta, options);
+}
+
 Status output_write(const Args *args, const Scene *scene, RenderResult *result,
                     const char *const *paths, int path_count)
 {
@@ -141,8 +150,7 @@ Status output_write(const Args *args, const Scene *scene, RenderResult *result,
     header_fill(header, args, scene, result);
     for (int i = 0; i < path_count; i++) {
         if (kind_of(paths[i]) == FILE_EXR)
-            TRY(exr_write(args->diag, paths[i], &result->image, &header->meta,
-                          (ExrOptions){args_has(args, OPT_HALF)}));
+            TRY(write_exr(args, &result->image, paths[i], &header->meta));
         else
             TRY(write_png(args, &result->image, paths[i], &header->meta));
     }

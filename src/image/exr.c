@@ -1,12 +1,14 @@
 /* OpenEXR out.
  *
- * One scanline part, zip-compressed in chunks of 16 lines.  The bytes depend on nothing but the
- * image, the fields and the options: no date, no host, one thread.
+ * One scanline part, zip-compressed in chunks of 16 lines: a round of them at once, written in
+ * order.  The bytes depend on nothing but the image, the fields and the options: no date, no
+ * host, not on the threads.
  * SPDX-License-Identifier: Apache-2.0 */
 #include "image/exr.h"
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/work.h"
 #include "image/exr_int.h"
 
 #include <assert.h>
@@ -18,8 +20,9 @@
 #include <unistd.h>
 
 enum {
-    ZIP_LEVEL = 4,  /* nearly as small as 9, several times as fast */
-    ZIP_LINES = 16, /* lines of a chunk, fixed by the format */
+    ZIP_LEVEL = 4,     /* nearly as small as 9, several times as fast */
+    ZIP_LINES = 16,    /* lines of a chunk, fixed by the format */
+    ROUND_CHUNKS = 16, /* of a round, for each thread: bounds the memory */
     EXR_CHANNELS_MAX = 1024
 };
 
@@ -33,13 +36,24 @@ typedef struct ExrChannel {
     bool is_half;
 } ExrChannel;
 
+/* Sixteen lines on their way into the file. */
+typedef struct ExrChunk {
+    int y;
+    exr_encode_pipeline_t encoder; /* holds the compressed bytes until they are written */
+    bool is_compressed;
+    exr_result_t code;
+} ExrChunk;
+
 typedef struct ExrWriter {
     const Image *image;
+    int threads;
     ExrStream stream;
     exr_context_t context;
     ExrChannel *channels;
     int channel_count;
-    float *lines; /* ZIP_LINES lines of one planar block per channel */
+    size_t block_size; /* floats: ZIP_LINES lines of each channel */
+    float *blocks;     /* one a thread */
+    ExrChunk *round;
 } ExrWriter;
 
 /* Return true if a channel holds colours, which may be stored as half. */
@@ -116,15 +130,15 @@ static void copy_line(const ExrChannel *channel, size_t first_pixel, size_t coun
     }
 }
 
-static void fill_chunk(ExrWriter *w, exr_encode_pipeline_t *encoder, int y)
+/* Lay out the lines of a chunk in `block`, and tell the encoder where they are. */
+static void fill_chunk(const ExrWriter *w, ExrChunk *chunk, float *block)
 {
     size_t width = (size_t)w->image->width;
-    for (int16_t c = 0; c < encoder->channel_count; c++) {
-        exr_coding_channel_info_t *info = &encoder->channels[c];
+    for (int16_t c = 0; c < chunk->encoder.channel_count; c++, block += ZIP_LINES * width) {
+        exr_coding_channel_info_t *info = &chunk->encoder.channels[c];
         const ExrChannel *channel = find_channel(w, info->channel_name);
-        float *block = w->lines + (size_t)c * ZIP_LINES * width;
         for (size_t line = 0; line < (size_t)info->height; line++)
-            copy_line(channel, ((size_t)y + line) * width, width, block + line * width);
+            copy_line(channel, ((size_t)chunk->y + line) * width, width, block + line * width);
         info->encode_from_ptr = (const uint8_t *)block;
         info->user_data_type = EXR_PIXEL_FLOAT;
         info->user_bytes_per_element = sizeof(float);
@@ -133,26 +147,73 @@ static void fill_chunk(ExrWriter *w, exr_encode_pipeline_t *encoder, int y)
     }
 }
 
+/* The library asks, with the bytes ready, for this chunk's turn to be written, or writes them.  The
+ * round is written when all of it is ready. */
+static exr_result_t keep_bytes(exr_encode_pipeline_t *encoder)
+{
+    ((ExrChunk *)encoder->encoding_user_data)->is_compressed = true;
+    return EXR_ERR_INCORRECT_CHUNK;
+}
+
+static exr_result_t compress_chunk(const ExrWriter *w, ExrChunk *chunk, float *block)
+{
+    exr_chunk_info_t info;
+    exr_result_t code = exr_write_scanline_chunk_info(w->context, 0, chunk->y, &info);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_encoding_initialize(w->context, 0, &info, &chunk->encoder);
+    if (code != EXR_ERR_SUCCESS)
+        return code;
+    fill_chunk(w, chunk, block);
+    code = exr_encoding_choose_default_routines(w->context, 0, &chunk->encoder);
+    if (code != EXR_ERR_SUCCESS)
+        return code;
+    chunk->encoder.encoding_user_data = chunk;
+    chunk->encoder.yield_until_ready_fn = chunk->encoder.write_fn = keep_bytes;
+    code = exr_encoding_run(w->context, 0, &chunk->encoder);
+    return chunk->is_compressed ? EXR_ERR_SUCCESS : code;
+}
+
+static void compress_item(void *ctx, size_t index, int thread)
+{
+    const ExrWriter *w = ctx;
+    ExrChunk *chunk = &w->round[index];
+    chunk->code = compress_chunk(w, chunk, w->blocks + (size_t)thread * w->block_size);
+}
+
+static exr_result_t write_chunk(const ExrWriter *w, ExrChunk *chunk)
+{
+    const exr_encode_pipeline_t *encoder = &chunk->encoder;
+    if (chunk->code != EXR_ERR_SUCCESS)
+        return chunk->code;
+    return exr_write_scanline_chunk(w->context, 0, chunk->y, encoder->compressed_buffer,
+                                    encoder->compressed_bytes);
+}
+
+/* Compress some chunks and write them; *y is the first line, and that after the last.  A picture
+ * that is done is written even when the program is interrupted. */
+static exr_result_t write_round(ExrWriter *w, int *y)
+{
+    size_t count = 0, most = (size_t)w->threads * ROUND_CHUNKS;
+    for (; count < most && *y < w->image->height; *y += ZIP_LINES)
+        w->round[count++] = (ExrChunk){.y = *y, .encoder = EXR_ENCODE_PIPELINE_INITIALIZER};
+    exr_result_t code = EXR_ERR_SUCCESS;
+    bool is_interrupted = work_for(w->threads, count, compress_item, w) != OK;
+    for (size_t i = 0; i < count; i++) {
+        if (is_interrupted && !w->round[i].encoder.context)
+            compress_item(w, i, 0);
+        if (code == EXR_ERR_SUCCESS)
+            code = write_chunk(w, &w->round[i]);
+        if (w->round[i].encoder.context)
+            exr_encoding_destroy(w->context, &w->round[i].encoder);
+    }
+    return code;
+}
+
 static exr_result_t write_chunks(ExrWriter *w)
 {
-    exr_encode_pipeline_t encoder = EXR_ENCODE_PIPELINE_INITIALIZER;
     exr_result_t code = EXR_ERR_SUCCESS;
-    for (int y = 0; y < w->image->height && code == EXR_ERR_SUCCESS; y += ZIP_LINES) {
-        exr_chunk_info_t chunk;
-        code = exr_write_scanline_chunk_info(w->context, 0, y, &chunk);
-        if (code == EXR_ERR_SUCCESS)
-            code = y == 0 ? exr_encoding_initialize(w->context, 0, &chunk, &encoder)
-                          : exr_encoding_update(w->context, 0, &chunk, &encoder);
-        if (code != EXR_ERR_SUCCESS)
-            break;
-        fill_chunk(w, &encoder, y);
-        if (y == 0)
-            code = exr_encoding_choose_default_routines(w->context, 0, &encoder);
-        if (code == EXR_ERR_SUCCESS)
-            code = exr_encoding_run(w->context, 0, &encoder);
-    }
-    if (encoder.context)
-        exr_encoding_destroy(w->context, &encoder);
+    for (int y = 0; y < w->image->height && code == EXR_ERR_SUCCESS;)
+        code = write_round(w, &y);
     return code;
 }
 
@@ -202,17 +263,21 @@ Status exr_write(Diag *diag, const char *path, const Image *image, const Meta *m
     assert(count >= 1 && count <= EXR_CHANNELS_MAX);
     OutFile out;
     TRY(out_begin(diag, path, &out));
-    ExrWriter w = {.image = image};
+    size_t threads = options.threads > 0 ? (size_t)options.threads : 1;
+    ExrWriter w = {.image = image, .threads = (int)threads};
+    w.block_size = count * ZIP_LINES * (size_t)image->width;
     w.channels = mem_array(count, sizeof *w.channels);
-    w.lines = mem_array(count * ZIP_LINES, (size_t)image->width * sizeof *w.lines);
+    w.blocks = mem_array(threads, w.block_size * sizeof *w.blocks);
+    w.round = mem_array(threads * ROUND_CHUNKS, sizeof *w.round);
     Status status = OK;
-    if (w.channels && w.lines) {
+    if (w.channels && w.blocks && w.round) {
         list_channels(&w, options.is_half);
         status = write_to(diag, &w, &out, meta);
     } else {
         status = diag_no_memory(diag, path);
     }
-    mem_free(w.lines);
+    mem_free(w.round);
+    mem_free(w.blocks);
     mem_free(w.channels);
     if (status == OK)
         return out_commit(diag, &out);

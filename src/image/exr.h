@@ -6,10 +6,12 @@
 
 typedef struct ExrOptions {
     bool is_half; /* colour channels as half; Z, N and other data stay float */
+    int threads;  /* that compress; 0: one */
 } ExrOptions;
 
 /* Write every layer to one part: the beauty as R,G,B,A, others as name.channel; zip-compressed,
- * Rec.709 chromaticities, `meta` as string attributes.  Whole or not at all. */
+ * Rec.709 chromaticities, `meta` as string attributes.  Whole or not at all.  The bytes are the same on any
+ * number of threads. */
 Status exr_write(Diag *diag, const char *path, const Image *image, const Meta *meta,
                  ExrOptions options);
 
