@@ -103,6 +103,16 @@ bool shape_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Cr
     return is_hit;
 }
 
+bool shape_is_met(const Shape *shape, const Ray *ray, ShapeScratch *scratch)
+{
+    Crossing crossing;
+    if (shape->kind != SHAPE_SPHERE || shape->clip_count)
+        return shape_closest(shape, ray, scratch, &crossing);
+    LocalRay local;
+    local_ray(shape, ray, &local);
+    return sphere_is_met(shape, &local, ray->tmin, ray->tmax);
+}
+
 void shape_crossings(const Shape *shape, const Ray *ray, ShapeScratch *scratch, CrossList *out)
 {
     out->is_inside_before = list_part(shape, ray, -INFINITY, INFINITY, scratch);

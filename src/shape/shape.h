@@ -188,6 +188,10 @@ void shape_crossings(const Shape *shape, const Ray *ray, ShapeScratch *scratch, 
  * Returns false when there is none. */
 bool shape_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Crossing *out);
 
+/* Return whether there is a visible crossing with tmin < t < tmax: what shape_closest returns,
+ * found for less. */
+bool shape_is_met(const Shape *shape, const Ray *ray, ShapeScratch *scratch);
+
 bool shape_is_inside(const Shape *shape, V3 p);
 
 /* Refine and describe the point of a crossing.

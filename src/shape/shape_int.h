@@ -78,6 +78,7 @@ static inline V3 local_error(const LocalRay *ray, double t)
 
 /* Per kind: the crossings, and the point of one.  They may assume a leaf of their kind. */
 void sphere_hits(const Shape *shape, const LocalRay *ray, LeafHits *out);
+bool sphere_is_met(const Shape *shape, const LocalRay *ray, double tmin, double tmax);
 void sphere_point(const Shape *shape, V3 p, LocalPoint *out);
 V2 sphere_uv(const Shape *shape, V3 p);
 bool sphere_is_inside(const Shape *shape, V3 p);

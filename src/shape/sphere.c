@@ -4,25 +4,51 @@
  * cancels however far the ray starts away.  SPDX-License-Identifier: Apache-2.0 */
 #include "shape/shape_int.h"
 
-void sphere_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
+/* The chord of a line in a sphere. */
+typedef struct Chord {
+    double middle, half2; /* t, and half its length squared; not above 0: there is none */
+    double inverse;       /* 1 / |d|^2 */
+    V3 o;                 /* the ray's origin from the centre */
+} Chord;
+
+static inline Chord find_chord(const SphereParams *sphere, const LocalRay *ray)
 {
-    double r = shape->u.sphere.radius;
-    V3 o = v3_sub(ray->o, shape->u.sphere.center);
+    V3 o = v3_sub(ray->o, sphere->center);
     double a = v3_len2(ray->d), inverse = 1 / a;
     double nearest = -v3_dot(o, ray->d) * inverse;
     V3 f = v3_mad(o, nearest, ray->d);
     /* What rounding left of f along the ray is put back. */
     double left = v3_dot(f, ray->d) * inverse;
-    double missed = r * r - v3_len2(f) + left * left * a;
+    double inside = sphere->radius * sphere->radius - v3_len2(f) + left * left * a;
+    return (Chord){nearest - left, inside * inverse, inverse, o};
+}
+
+bool sphere_is_met(const Shape *shape, const LocalRay *ray, double tmin, double tmax)
+{
+    Chord chord = find_chord(&shape->u.sphere, ray);
+    double ahead = chord.middle - tmin, left = tmax - chord.middle;
+    if (!(chord.half2 > 0))
+        return false;
+    bool starts_before = ahead > 0 && ahead * ahead > chord.half2;
+    bool ends_behind = left > 0 && left * left > chord.half2;
+    return (starts_before && (left > 0 || left * left < chord.half2)) ||
+           (ends_behind && (ahead > 0 || ahead * ahead < chord.half2));
+}
+
+void sphere_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
+{
+    double r = shape->u.sphere.radius;
+    Chord chord = find_chord(&shape->u.sphere, ray);
+    V3 o = chord.o;
     out->count = 0;
     out->is_inside_before = false;
-    if (!(missed > 0))
+    if (!(chord.half2 > 0))
         return;
-    double middle = nearest - left, half = sqrt(missed * inverse);
+    double middle = chord.middle, half = sqrt(chord.half2);
     /* f is off by `off`; the half chord by off f / half, or the root of what `missed` is off. */
     double off = 4 * EPS_DOUBLE * v3_sum_abs(o) + v3_sum_abs(ray->o_error) +
                  fabs(middle) * v3_sum_abs(ray->d_error) + shape->rounding.place;
-    double speed2 = inverse; /* (1/|d|)^2 */
+    double speed2 = chord.inverse; /* (1/|d|)^2 */
     double doubt = 2 * r * off + 6 * EPS_DOUBLE * r * r;
     double own = doubt * speed2 / half, most = sqrt(doubt * speed2);
     double error =

@@ -61,8 +61,7 @@ static bool test_object(ShadowQuery *query, uint32_t object, const Ray *ray)
         return false;
     if (!may_block(query, object) && note_filter(query, object))
         return false;
-    Crossing crossing;
-    if (!shape_closest(traced->shape, ray, query->thread->shapes, &crossing))
+    if (!shape_is_met(traced->shape, ray, query->thread->shapes))
         return false;
     query->blocker = object;
     return true;

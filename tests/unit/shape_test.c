@@ -283,6 +283,18 @@ static Shape *random_shape(uint32_t i, Rng *rng)
     return s;
 }
 
+/* shape_is_met says what shape_closest says, for any part of the line. */
+static void check_met(const Shape *shape, Ray ray, Rng *rng)
+{
+    Crossing first;
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(shape_is_met(shape, &ray, scratch),
+                         shape_closest(shape, &ray, scratch, &first));
+        ray.tmin = 8 * rng_double(rng);
+        ray.tmax = ray.tmin + 4 * rng_double(rng);
+    }
+}
+
 /* Between two crossings the state of a line is the state of its points; every crossing lies
  * in the box and its point on the surface; normals point out; shape_closest agrees. */
 static void test_consistency(void **state)
@@ -333,6 +345,7 @@ static void test_consistency(void **state)
         assert_int_equal(is_hit, expected < list.count);
         if (is_hit)
             assert_true(first.t == list.items[expected].t);
+        check_met(shape, ray, &rng);
     }
 }
 
@@ -358,6 +371,7 @@ static void test_restart(void **state)
         if (side < 0)
             d = v3_neg(d);
         Ray next = {v3_mad(point.p, point.p_error, point.ng), d, 0, INFINITY};
+        check_met(shape, next, &rng);
         if (shape->kind != SHAPE_TORUS) {
             assert_false(shape_closest(shape, &next, scratch, &c)); /* convex */
         } else if (shape_closest(shape, &next, scratch, &c)) {
@@ -365,6 +379,7 @@ static void test_restart(void **state)
         }
         next = (Ray){v3_mad(point.p, -point.p_error, point.ng), v3_neg(d), 0, INFINITY};
         assert_true(shape_closest(shape, &next, scratch, &c));
+        check_met(shape, next, &rng);
     }
 }
 
