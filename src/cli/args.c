@@ -300,6 +300,8 @@ Status args_int(const Args *args, OptionId id, long lowest, long highest, long f
     return OK;
 }
 
+#define LIGHT_RADIUS_MAX 1e30
+
 enum { WIDTH_DEFAULT = 640, HEIGHT_DEFAULT = 480, SAMPLES_MAX = 1 << 20 };
 
 static Status read_size(const Args *args, int *width, int *height)
@@ -378,6 +380,17 @@ static Status read_antialiasing(const Args *args, RenderOptions *out)
     return OK;
 }
 
+static Status read_integrator(const Args *args, PlanOptions *out)
+{
+    const char *name = args->value[OPT_INTEGRATOR];
+    if (name && strcmp(name, "path") == 0)
+        out->integrator = INTEGRATOR_PATH;
+    else if (name && strcmp(name, "photons") != 0)
+        return diag_fail(args->diag, ERR_USAGE, "--integrator wants photons or path, got '%s'",
+                         name);
+    return args_number(args, OPT_LIGHT_RADIUS, 0, LIGHT_RADIUS_MAX, 0, &out->light_radius);
+}
+
 Status args_render_options(const Args *args, RenderOptions *out)
 {
     long threads, seed, quality;
@@ -388,6 +401,7 @@ Status args_render_options(const Args *args, RenderOptions *out)
     TRY(args_int(args, OPT_QUALITY, 0, 11, 9, &quality));
     TRY(read_layers(args, &out->layers));
     TRY(read_antialiasing(args, out));
+    TRY(read_integrator(args, &out->plan));
     out->threads = (int)threads;
     out->seed = (uint64_t)seed;
     out->plan.quality = (int)(quality > 9 ? 9 : quality);

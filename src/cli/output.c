@@ -59,6 +59,9 @@ static void header_fill(Header *header, const Args *args, const Scene *scene,
     header_add(header, "pms.scene", "%s", scene->path);
     header_add(header, "pms.command", "%s", line);
     header_add(header, "pms.seed", "%s", args->value[OPT_SEED] ? args->value[OPT_SEED] : "0");
+    header_add(header, "pms.integrator",
+               plan_has(&result->plan, FEATURE_PATHS) ? "path, light_radius %.17g" : "photons",
+               result->plan.light_radius);
     header_add(header, "pms.photons", "caustic %llu, global %llu",
                (unsigned long long)result->stats.count[STAT_PHOTONS_CAUSTIC],
                (unsigned long long)result->stats.count[STAT_PHOTONS_GLOBAL]);

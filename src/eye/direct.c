@@ -18,7 +18,7 @@ Rgb layers_direct(const SurfaceSample *s, V3 to_light, bool has_highlights)
 /* Direct light averaged over the grid of an area light, each point shining from its own place;
  * without shadows. */
 static Rgb area_illumination(EyeThread *eye, const EyeLight *light, const SurfaceSample *s,
-                             const LightSample *center)
+                             const LightSample *center, bool has_highlights)
 {
     const Light *source = light->light;
     AreaFrame frame = area_frame(source, center->to_light);
@@ -29,7 +29,7 @@ static Rgb area_illumination(EyeThread *eye, const EyeLight *light, const Surfac
             LightSample at = light_at(source, v3_add(source->location, offset), s->at.p);
             if (rgb_is_black(at.color))
                 continue;
-            Rgb sent = layers_direct(s, at.to_light, light->has_highlights);
+            Rgb sent = layers_direct(s, at.to_light, has_highlights);
             sum = rgb_add(sum, rgb_mul(sent, at.color));
         }
     return rgb_scale(sum, 1.0f / (float)(source->area.size1 * source->area.size2));
@@ -47,27 +47,29 @@ static Rgb light_shadow(EyeThread *eye, const EyeLight *light, const SurfaceSamp
                         blocks_targets);
 }
 
-static Rgb light_from(EyeThread *eye, const EyeLight *light, const SurfaceSample *s)
+static Rgb light_from(EyeThread *eye, const EyeLight *light, const SurfaceSample *s,
+                      bool has_highlights)
 {
+    has_highlights = has_highlights && light->has_highlights;
     LightSample sample = light_at(light->light, light->light->location, s->at.p);
     Rgb sent;
     if (light->is_area && light->light->area.has_illumination) {
-        sent = area_illumination(eye, light, s, &sample);
+        sent = area_illumination(eye, light, s, &sample, has_highlights);
     } else {
         if (rgb_is_black(sample.color))
             return RGB_BLACK;
-        sent = rgb_mul(layers_direct(s, sample.to_light, light->has_highlights), sample.color);
+        sent = rgb_mul(layers_direct(s, sample.to_light, has_highlights), sample.color);
     }
     if (rgb_is_black(sent))
         return RGB_BLACK;
     return rgb_mul(sent, light_shadow(eye, light, s, &sample));
 }
 
-Rgb direct_light(EyeThread *eye, const SurfaceSample *s)
+Rgb direct_light(EyeThread *eye, const SurfaceSample *s, bool has_highlights)
 {
     Rgb sum = RGB_BLACK;
     for (int i = 0; i < eye->light_count; i++)
-        sum = rgb_add(sum, light_from(eye, &eye->lights[i], s));
+        sum = rgb_add(sum, light_from(eye, &eye->lights[i], s, has_highlights));
     return sum;
 }
 

@@ -19,6 +19,12 @@ typedef struct Radiance {
     float transmit; /* what the ray lets through of a picture behind everything */
 } Radiance;
 
+/* The sequences of points that the paths of a pixel draw from, and the number of the path. */
+typedef struct PathKeys {
+    uint64_t choice, bounce;
+    uint32_t index;
+} PathKeys;
+
 struct EyeThread {
     TraceThread trace;
     const Scene *scene;
@@ -32,6 +38,7 @@ struct EyeThread {
     Interiors camera_interiors; /* around that point */
     double *blur_limits;        /* variance of the mean below which n rays are enough */
     Rng rng;                    /* of the sample being traced */
+    PathKeys path;
     /* Shadow samples of the area light at hand, valid where the mark is the current one. */
     Rgb *grid;
     uint32_t *grid_marks, grid_mark;
@@ -59,7 +66,11 @@ Rgb area_shadow(EyeThread *eye, const EyeLight *light, const SurfaceSample *s,
 Rgb layers_direct(const SurfaceSample *s, V3 to_light, bool has_highlights);
 
 /* Return the light of all light sources that a surface sends to the viewer. */
-Rgb direct_light(EyeThread *eye, const SurfaceSample *s);
+Rgb direct_light(EyeThread *eye, const SurfaceSample *s, bool has_highlights);
+
+/* Return what a surface gives off: ambient light, emission, and in unlit pictures the pigment
+ * itself. */
+Rgb own_light(const EyeThread *eye, const SurfaceSample *s);
 
 /* Return the light of the caustic map (of the global map) that a surface sends to the viewer. */
 Rgb caustic_light(EyeThread *eye, const SurfaceSample *s);
@@ -69,9 +80,37 @@ Rgb indirect_light(EyeThread *eye, const SurfaceSample *s);
  * through it; nothing in a mirror. */
 Rgb sky_light(const EyeThread *eye, V3 direction, bool is_mirrored, float *transmit);
 
+/* Add light, of which `through` arrives, to a part. */
+void add_part(Radiance *out, LightPart part, Rgb through, Rgb light);
+
+/* Bend the sum of the parts to sum^(1/exponent), each part in proportion. */
+void apply_exponent(Radiance *light, float exponent);
+
+/* Set depth, normal and albedo from the first surface. */
+void describe_first(const Hit *hit, const SurfaceSample *s, EyeSample *first);
+
 /* Trace a camera ray; depth, normal and albedo of `first` are taken from the first surface. */
 void camera_radiance(EyeThread *eye, const Ray *ray, const Interiors *interiors, Radiance *out,
                      EyeSample *first);
+
+/* Follow one path from the camera, chosen at random; else as camera_radiance.  The mean over
+ * many is the light along the ray.  Uses eye->path. */
+void path_radiance(EyeThread *eye, const Ray *ray, const Interiors *interiors, Radiance *out,
+                   EyeSample *first);
+
+/* Where a path meets a light. */
+typedef struct LightMeeting {
+    double t;     /* of the ray */
+    Rgb radiance; /* towards where the ray comes from */
+} LightMeeting;
+
+/* Return true if the ray, up to tmax, meets a light that is a disk of light_radius where it has
+ * no area of its own (0: then it is never met).
+ *
+ * length  gone before the ray by the light that goes back along it, from the diffuse surface it
+ *         is for; scene units. */
+bool light_meet(const Light *light, double light_radius, const Ray *ray, double tmax,
+                double length, LightMeeting *out);
 
 /* Fill limits[0..n] for up to n rays: the average of m is good enough when its variance is
  * below limits[m]. */

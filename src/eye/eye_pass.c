@@ -6,7 +6,7 @@
 #include "math/sample.h"
 
 /* Names the random numbers of this pass. */
-enum { EYE_RNG = 0x657965 };
+enum { EYE_RNG = 0x657965, PATH_RNG = 0x706174 };
 
 /* --- a thread's state --------------------------------------------------------------------- */
 
@@ -115,14 +115,17 @@ void eye_thread_free(EyeThread *eye, Stats *add_to)
 static void trace_camera_ray(EyeThread *eye, const Ray *ray, EyeSample *out)
 {
     Radiance seen;
+    Interiors around;
+    const Interiors *inside = &eye->camera_interiors;
     *out = (EyeSample){.depth = INFINITY};
-    if (eye->has_eye_point) {
-        camera_radiance(eye, ray, &eye->camera_interiors, &seen, out);
-    } else {
-        Interiors inside;
-        interiors_at(eye->trace.tracer, ray->o, &inside);
-        camera_radiance(eye, ray, &inside, &seen, out);
+    if (!eye->has_eye_point) {
+        interiors_at(eye->trace.tracer, ray->o, &around);
+        inside = &around;
     }
+    if (plan_has(eye->plan, FEATURE_PATHS))
+        path_radiance(eye, ray, inside, &seen, out);
+    else
+        camera_radiance(eye, ray, inside, &seen, out);
     for (int i = 0; i < PART_COUNT; i++)
         out->part[i] = seen.part[i];
     out->alpha = 1 - seen.transmit;
@@ -191,8 +194,11 @@ static void blur_mean(const Blur *blur, EyeSample *out)
 static void blurred_sample(EyeThread *eye, double x, double y, EyeSample *out)
 {
     uint64_t place_key = rng_u64(&eye->rng), lens_key = rng_u64(&eye->rng);
+    int rays = eye->scene->camera.blur_samples;
+    uint32_t first = eye->path.index * (uint32_t)rays;
     Blur blur = {.depth = INFINITY};
-    for (int i = 0; i < eye->scene->camera.blur_samples; i++) {
+    for (int i = 0; i < rays; i++) {
+        eye->path.index = first + (uint32_t)i;
         V2 place = sample_2d((uint32_t)i, place_key);
         V2 lens = warp_disk(sample_2d((uint32_t)i, lens_key));
         Ray ray = camera_lens_ray(&eye->camera, x + place.u - 0.5, y + place.v - 0.5, lens);
@@ -217,6 +223,10 @@ static bool sample_is_finite(const EyeSample *s)
 bool eye_sample(EyeThread *eye, double x, double y, uint32_t pixel, uint32_t index, EyeSample *out)
 {
     eye->rng = rng_at(eye->options.seed, EYE_RNG, (uint64_t)pixel << 32 | index);
+    Rng of_pixel = rng_at(eye->options.seed, PATH_RNG, pixel);
+    eye->path.choice = rng_u64(&of_pixel);
+    eye->path.bounce = rng_u64(&of_pixel);
+    eye->path.index = index;
     arena_reset(eye->trace.scratch);
     eye->trace.stats.count[STAT_SAMPLES]++;
     if (eye->blur_limits) {

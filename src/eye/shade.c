@@ -26,7 +26,7 @@ typedef struct Path {
 
 static void radiance(EyeThread *eye, Path *path, Radiance *out, EyeSample *first);
 
-static void add_part(Radiance *out, LightPart part, Rgb through, Rgb light)
+void add_part(Radiance *out, LightPart part, Rgb through, Rgb light)
 {
     out->part[part] = rgb_add(out->part[part], rgb_mul(through, light));
 }
@@ -36,8 +36,7 @@ static Rgb radiance_sum(const Radiance *r)
     return rgb_add(rgb_add(r->part[PART_DIRECT], r->part[PART_CAUSTIC]), r->part[PART_INDIRECT]);
 }
 
-/* Ambient light, emission, and in unlit pictures the pigment itself. */
-static Rgb own_light(const EyeThread *eye, const SurfaceSample *s)
+Rgb own_light(const EyeThread *eye, const SurfaceSample *s)
 {
     const Plan *plan = eye->plan;
     Rgb sum = RGB_BLACK;
@@ -60,8 +59,7 @@ static float channel_power(float sum, float power)
     return sum > 0 ? powf(sum, power) / sum : 0;
 }
 
-/* Bend the sum of the parts to sum^(1/exponent), each part in proportion. */
-static void apply_exponent(Radiance *light, float exponent)
+void apply_exponent(Radiance *light, float exponent)
 {
     Rgb sum = radiance_sum(light);
     float power = 1 / exponent;
@@ -144,7 +142,7 @@ static bool go_on(EyeThread *eye, Path *path, const SurfaceSample *s)
     return true;
 }
 
-static void describe_first(const Hit *hit, const SurfaceSample *s, EyeSample *first)
+void describe_first(const Hit *hit, const SurfaceSample *s, EyeSample *first)
 {
     Rgb albedo = RGB_BLACK;
     for (int i = 0; i < s->layer_count; i++) {
@@ -160,7 +158,7 @@ static void add_surface(EyeThread *eye, const Path *path, const SurfaceSample *s
 {
     Rgb direct = own_light(eye, s);
     if (plan_has(eye->plan, FEATURE_LIGHTS))
-        direct = rgb_add(direct, direct_light(eye, s));
+        direct = rgb_add(direct, direct_light(eye, s, true));
     add_part(out, PART_DIRECT, path->through, direct);
     if (eye->options.caustic)
         add_part(out, PART_CAUSTIC, path->through, caustic_light(eye, s));

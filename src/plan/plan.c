@@ -32,6 +32,10 @@ typedef struct Evidence {
     const Light *lit_area;   /* one with area_illumination */
     const Light *caustic_light;
     int targets, caustic_lights;
+    const Surface *bending;        /* mirrors light, or lets it through other than straight */
+    const Surface *clear;          /* casts a shadow that light passes straight */
+    const Light *sized, *sizeless; /* casts shadows, and paths can (cannot) meet it */
+    int sized_lights, sizeless_lights;
 } Evidence;
 
 const char *feature_name(FeatureId feature)
@@ -136,15 +140,29 @@ static void look_at_surface(const Surface *s, Evidence *found)
     first_surface(&found->highlighted, s, surface_has_highlights(s));
     first_surface(&found->blocking, s, !s->no_shadow);
     first_surface(&found->filtering, s, s->may_transmit && !s->no_shadow);
+    first_surface(&found->bending, s,
+                  (s->may_reflect || (s->may_transmit && !s->is_filter)) && !s->no_shadow);
+    first_surface(&found->clear, s, s->may_transmit && s->is_filter && !s->no_shadow);
     first_surface(&found->target, s, s->is_target);
     found->targets += s->is_target;
 }
 
-static void look_at_light(const Scene *scene, const Light *light, bool *makes_caustics,
-                          Evidence *found)
+bool plan_light_has_size(const Light *light, double light_radius)
+{
+    bool is_parallel = light->is_parallel || light->kind == LIGHT_CYLINDER;
+    return light_radius > 0 || (!is_parallel && light->area.size1 > 1 && light->area.size2 > 1);
+}
+
+static void look_at_light(const Scene *scene, const PlanOptions *options, const Light *light,
+                          bool *makes_caustics, Evidence *found)
 {
     if (!light_shines(light))
         return;
+    bool has_size = plan_light_has_size(light, options->light_radius);
+    found->sized_lights += has_size && !light->is_shadowless;
+    found->sizeless_lights += !has_size && !light->is_shadowless;
+    first_light(&found->sized, light, has_size && !light->is_shadowless);
+    first_light(&found->sizeless, light, !has_size && !light->is_shadowless);
     *makes_caustics = light_makes_caustics(scene, light);
     found->caustic_lights += *makes_caustics;
     first_light(&found->light, light, true);
@@ -180,14 +198,46 @@ static bool row_below(PlanRow *row, int quality, int needed)
     return true;
 }
 
+static void plan_paths(const PlanOptions *options, const Evidence *found, Plan *plan)
+{
+    PlanRow *row = &plan->rows[FEATURE_PATHS], *caustics = &plan->rows[FEATURE_PATH_CAUSTICS];
+    bool has_paths = options->integrator == INTEGRATOR_PATH;
+    if (!has_paths)
+        row_set(row, false, SPAN_NONE, "not asked for (--integrator path)");
+    else if (!row_below(row, options->quality, QUALITY_PHOTONS))
+        row_set(row, true, SPAN_NONE,
+                "asked for on the command line; finish ambient does not count");
+    if (!row->is_on)
+        row_set(caustics, false, SPAN_NONE, "no path tracing");
+    else if (!found->bending)
+        row_set(caustics, false, SPAN_NONE,
+                "no surface that casts a shadow bends or mirrors light");
+    else if (!found->shadowing)
+        row_set(caustics, false, SPAN_NONE, "no light casts shadows");
+    else if (!found->sized)
+        row_set(caustics, false, found->sizeless->span,
+                "MISSING: no light has a size (--light-radius gives them one)");
+    else if (found->sizeless)
+        row_set(caustics, true, found->sizeless->span,
+                "lights with a size: %d; MISSING are those of %d without (--light-radius)",
+                found->sized_lights, found->sizeless_lights);
+    else
+        row_set(caustics, true, found->bending->span, "lights with a size: %d",
+                found->sized_lights);
+    if (row->is_on && found->bending)
+        plan->unmet_lights = found->sizeless_lights;
+}
+
 static void plan_caustics(const Scene *scene, const PlanOptions *options, const Evidence *found,
-                          PlanRow *row)
+                          bool has_paths, PlanRow *row)
 {
     const PhotonSettings *photons = &scene->settings.photons;
     if (row_below(row, options->quality, QUALITY_PHOTONS))
         return;
     if (!found->transmitting && !found->reflecting)
         row_set(row, false, SPAN_NONE, "no surface reflects or transmits");
+    else if (has_paths)
+        row_set(row, false, SPAN_NONE, "path tracing finds that light itself");
     else if (options->has_no_photons)
         row_set(row, false, SPAN_NONE, "switched off on the command line");
     else if (!photons->is_on)
@@ -208,12 +258,14 @@ static void plan_caustics(const Scene *scene, const PlanOptions *options, const 
 }
 
 static void plan_indirect(const Scene *scene, const PlanOptions *options, const Evidence *found,
-                          PlanRow *row)
+                          bool has_paths, PlanRow *row)
 {
     const PmsSettings *pms = &scene->settings.pms;
     if (row_below(row, options->quality, QUALITY_PHOTONS))
         return;
-    if (!options->has_indirect && !pms->has_indirect)
+    if (has_paths)
+        row_set(row, false, SPAN_NONE, "path tracing finds that light itself");
+    else if (!options->has_indirect && !pms->has_indirect)
         row_set(row, false, SPAN_NONE, "not asked for (gi)");
     else if (options->has_no_photons)
         row_set(row, false, SPAN_NONE, "switched off on the command line");
@@ -245,6 +297,10 @@ static void plan_lights(const PlanOptions *options, const Evidence *found, Plan 
     row = &rows[FEATURE_TRANSPARENT_SHADOWS];
     if (!has_shadows)
         row_set(row, false, SPAN_NONE, "no shadow rays");
+    else if (plan_has(plan, FEATURE_PATHS))
+        row_set(row, found->clear, found->clear ? found->clear->span : SPAN_NONE, "%s",
+                found->clear ? "an object that casts a shadow and that light passes straight"
+                             : "no object that casts a shadow lets light pass straight");
     else
         row_set(row, found->filtering, found->filtering ? found->filtering->span : SPAN_NONE, "%s",
                 found->filtering ? "an object that casts a shadow may transmit light"
@@ -315,16 +371,19 @@ Status plan_make(const Scene *scene, const PlanOptions *options, Arena *arena, P
     for (uint32_t i = 0; i < scene->surface_count; i++)
         look_at_surface(&scene->surfaces[i], &found);
     for (int i = 0; i < scene->light_count; i++)
-        look_at_light(scene, &scene->lights[i], &out->light_makes_caustics[i], &found);
+        look_at_light(scene, options, &scene->lights[i], &out->light_makes_caustics[i], &found);
 
-    plan_caustics(scene, options, &found, &out->rows[FEATURE_CAUSTIC_MAP]);
-    plan_indirect(scene, options, &found, &out->rows[FEATURE_GLOBAL_MAP]);
+    plan_paths(options, &found, out);
+    bool has_paths = plan_has(out, FEATURE_PATHS);
+    plan_caustics(scene, options, &found, has_paths, &out->rows[FEATURE_CAUSTIC_MAP]);
+    plan_indirect(scene, options, &found, has_paths, &out->rows[FEATURE_GLOBAL_MAP]);
     plan_lights(options, &found, out);
     plan_surfaces(options, &found, out->rows);
     plan_camera_and_sky(scene, out->rows);
 
     out->is_unlit = options->quality < QUALITY_LIGHTS;
-    out->has_ambient = !plan_has(out, FEATURE_GLOBAL_MAP);
+    out->has_ambient = !plan_has(out, FEATURE_GLOBAL_MAP) && !has_paths;
+    out->light_radius = options->light_radius;
     if (plan_has(out, FEATURE_CAUSTIC_MAP))
         out->caustic_photons = scene->settings.photons.count;
     else

@@ -20,8 +20,13 @@ typedef struct PlanRow {
     char reason[160];   /* in words: "object with refraction, photons { target }" */
 } PlanRow;
 
+/* How light finds its way: by photons and rays of the language's kinds, or by paths alone. */
+typedef enum Integrator { INTEGRATOR_PHOTONS, INTEGRATOR_PATH } Integrator;
+
 /* Options that change what is simulated, whatever the scene says. */
 typedef struct PlanOptions {
+    Integrator integrator;  /* --integrator */
+    double light_radius;    /* --light-radius, scene units: see Plan */
     bool has_indirect;      /* --gi */
     bool has_no_photons;    /* --no-photons */
     int quality;            /* POV's +Q, 0 to 9 */
@@ -34,6 +39,9 @@ typedef struct Plan {
     bool *light_makes_caustics; /* per light: takes part in the caustic map */
     bool is_unlit;              /* quality 0 and 1: surfaces show their pigment, nothing more */
     bool has_ambient;           /* finish{ambient} counts (not beside real indirect light) */
+    double light_radius;        /* of the disk that a light without an area is to paths; 0: they
+                                   cannot meet it */
+    int unmet_lights;           /* lights whose caustics paths would bring, had they a size */
     long caustic_photons;       /* the count of photons{}, expected to be stored; 0: by spacing */
     long global_photons;        /* to emit into the scene, all lights */
 } Plan;
@@ -44,6 +52,16 @@ Status plan_make(const Scene *scene, const PlanOptions *options, Arena *arena, P
 static inline bool plan_has(const Plan *plan, FeatureId feature)
 {
     return plan->rows[feature].is_on;
+}
+
+/* Return true if paths can meet a light: one with an area, or any if lights have a radius. */
+bool plan_light_has_size(const Light *light, double light_radius);
+
+/* Return true if shadow rays pass a surface, filtered.  With path tracing only those that light
+ * passes straight let them: what bends or mirrors it is left to the paths. */
+static inline bool plan_filters_shadow(const Plan *plan, const Surface *surface)
+{
+    return surface->may_transmit && (surface->is_filter || !plan_has(plan, FEATURE_PATHS));
 }
 
 /* Return true if photons from `light` are to be reflected (refracted) by a surface: the object or

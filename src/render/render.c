@@ -131,6 +131,15 @@ static Status check_options(const RenderOptions *options, Diag *diag)
     return OK;
 }
 
+static void warn_of_missing(const Plan *plan, Diag *diag)
+{
+    if (plan->unmet_lights > 0)
+        diag_warn(diag, WARN_RENDER, plan->rows[FEATURE_PATH_CAUSTICS].why,
+                  "paths cannot meet %d light%s without an area, whose caustics are missing: "
+                  "--light-radius gives lights a size",
+                  plan->unmet_lights, plan->unmet_lights == 1 ? "" : "s");
+}
+
 Status render_scene(const Scene *scene, const RenderOptions *options, Diag *diag, RenderResult *out)
 {
     Render r = {.scene = scene, .options = options, .diag = diag, .out = out};
@@ -138,6 +147,7 @@ Status render_scene(const Scene *scene, const RenderOptions *options, Diag *diag
     TRY(check_options(options, diag));
     if (plan_make(scene, &options->plan, scene->arena, &out->plan) != OK)
         return diag_no_memory(diag, "the plan");
+    warn_of_missing(&out->plan, diag);
     Status status = run(&r);
     if (status == OK) {
         out->image = r.film.image;

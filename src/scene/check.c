@@ -19,6 +19,21 @@ static bool surface_has(const Surface *s, bool (*has)(const Texture *texture))
            mesh_texture_has(s, has);
 }
 
+static bool texture_conserves(const Texture *texture)
+{
+    for (int i = 0; i < texture->layer_count; i++)
+        if (texture->layers[i].finish->conserves_energy)
+            return true;
+    return false;
+}
+
+/* Fake caustics brighten what passes; a mirror that conserves energy takes its part of it. */
+static bool only_filters(const Surface *s)
+{
+    return s->interior->ior == 1 && s->interior->caustics == 0 &&
+           !(s->may_reflect && surface_has(s, texture_conserves));
+}
+
 /* A flag of an object is that of all its surfaces together. */
 static void set_object_flags(Scene *scene)
 {
@@ -165,6 +180,7 @@ Status scene_check(Scene *scene, Diag *diag)
         Surface *s = &scene->surfaces[i];
         s->may_transmit = surface_has(s, texture_may_transmit);
         s->may_reflect = surface_has(s, texture_may_reflect);
+        s->is_filter = only_filters(s);
         s->is_target = false;
     }
     mark_targets(scene, diag);

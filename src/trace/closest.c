@@ -152,7 +152,8 @@ static bool test_view(ClosestQuery *query, const ViewIndex *view, Ray *ray)
 bool trace_closest(TraceThread *thread, const Ray *ray, RayKind kind, Hit *out)
 {
     static const StatId counters[RAY_KIND_COUNT] = {STAT_CAMERA_RAYS, STAT_REFLECTED_RAYS,
-                                                    STAT_REFRACTED_RAYS, STAT_PHOTON_RAYS};
+                                                    STAT_REFRACTED_RAYS, STAT_PHOTON_RAYS,
+                                                    STAT_DIFFUSE_RAYS};
     const Tracer *tracer = thread->tracer;
     thread->stats.count[counters[kind]]++;
     ClosestQuery query;

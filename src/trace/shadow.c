@@ -184,7 +184,7 @@ static Rgb crossing_filter(const ShadowQuery *query, Filter *filter, const Ray *
     const Crossing *crossing = &filter->next;
     const Surface *surface = &query->tracer->scene->surfaces[crossing->leaf->surface];
     const Interior *interior = surface->interior;
-    if (!surface->may_transmit || is_blocking_target(query, surface))
+    if (!plan_filters_shadow(query->tracer->plan, surface) || is_blocking_target(query, surface))
         return RGB_BLACK;
     /* The point is needed only if something depends on it. */
     bool is_closed = query->tracer->objects[filter->object].is_closed;

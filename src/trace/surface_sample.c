@@ -221,6 +221,7 @@ static void sample_transmission(Sampling *s)
     V3 d = s->ray->d;
     const InteriorStep *step = step_of(s);
     double ratio = step->ior_from / step->ior_to;
+    out->ior_ratio = ratio;
     out->is_straight = fabs(ratio - 1) < EPS_LANGUAGE;
     if (out->is_straight) {
         out->transmit_dir = d;

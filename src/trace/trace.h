@@ -34,12 +34,14 @@ void trace_thread_done(TraceThread *thread);
 
 /* Camera, refracted and photon rays do not see no_image objects, reflected ones do not see
  * no_reflection objects, photons do not see no_shadow objects either.  What follows a reflected ray
- * through glass is a reflected ray. */
+ * through glass is a reflected ray.  Diffuse rays, and what follows them, see what shadow rays
+ * meet: all but no_shadow objects. */
 typedef enum RayKind {
     RAY_CAMERA,
     RAY_REFLECTED,
     RAY_REFRACTED,
     RAY_PHOTON,
+    RAY_DIFFUSE, /* gathers the light that a diffuse surface reflects */
     RAY_KIND_COUNT
 } RayKind;
 
@@ -121,6 +123,7 @@ typedef struct SurfaceSample {
                                nowhere else: light that a surface inside an interior gives off or
                                reflects is not absorbed on the way that led to that surface */
     V3 transmit_dir;        /* unit */
+    double ior_ratio;       /* of this side to the far side */
     Interiors inside_after; /* of the transmitted ray */
     const SceneSettings *settings;
 } SurfaceSample;
@@ -136,7 +139,9 @@ void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit, const I
  * distance        what light_at gave; behind a parallel light it is negative: no shadow.
  * light           index of the light, for the thread's memory of the last blocker; -1: none.
  * blocks_targets  objects that are photon targets with refraction cast full shadows (their
- *                 light comes with the caustic map). */
+ *                 light comes with the caustic map).
+ *
+ * With path tracing all that bends or mirrors light casts full shadows: see plan_filters_shadow. */
 Rgb trace_shadow(TraceThread *thread, const ShapePoint *from, V3 to, double distance, int light,
                  bool blocks_targets);
 

@@ -12,7 +12,7 @@ enum { VIEW_OBJECTS_MAX = 1024, VIEW_LIGHTS_MAX = 32 };
 
 /* Which surfaces the leaves of a shape have. */
 typedef struct LeafSummary {
-    bool may_transmit, has_filter_besides_targets, is_closed;
+    bool may_transmit, has_filter, has_filter_besides_targets, is_closed;
 } LeafSummary;
 
 static bool is_refracting_target(const Surface *surface)
@@ -35,18 +35,19 @@ static bool is_closed_leaf(const Shape *leaf)
     }
 }
 
-static void summarize(const Scene *scene, const Shape *shape, LeafSummary *sum)
+static void summarize(const Tracer *tracer, const Shape *shape, LeafSummary *sum)
 {
     if (shape->clip_count > 0)
         sum->is_closed = false;
     for (int i = 0; i < shape->child_count; i++)
-        summarize(scene, shape->children[i], sum);
+        summarize(tracer, shape->children[i], sum);
     if (shape->kind >= SHAPE_UNION)
         return;
-    const Surface *surface = &scene->surfaces[shape->surface];
+    const Surface *surface = &tracer->scene->surfaces[shape->surface];
     sum->is_closed &= is_closed_leaf(shape);
-    if (surface->may_transmit && !is_refracting_target(surface))
-        sum->has_filter_besides_targets = true;
+    bool is_filter = plan_filters_shadow(tracer->plan, surface);
+    sum->has_filter |= is_filter;
+    sum->has_filter_besides_targets |= is_filter && !is_refracting_target(surface);
     sum->may_transmit |= surface->may_transmit;
 }
 
@@ -90,7 +91,7 @@ static void describe_object(Tracer *tracer, uint32_t i)
     const Object *object = &tracer->scene->objects[i];
     TracedObject *out = &tracer->objects[i];
     LeafSummary sum = {.is_closed = true};
-    summarize(tracer->scene, object->shape, &sum);
+    summarize(tracer, object->shape, &sum);
     out->shape = object->shape;
     out->is_closed = sum.is_closed;
     set_ball(object, out);
@@ -98,9 +99,10 @@ static void describe_object(Tracer *tracer, uint32_t i)
     out->is_hidden[RAY_REFRACTED] = object->no_image;
     out->is_hidden[RAY_PHOTON] = object->no_image || object->no_shadow;
     out->is_hidden[RAY_REFLECTED] = object->no_reflection;
+    out->is_hidden[RAY_DIFFUSE] = object->no_shadow;
     if (object->no_shadow)
         out->shadow = SHADOW_NONE;
-    else if (!sum.may_transmit || !plan_has(tracer->plan, FEATURE_TRANSPARENT_SHADOWS))
+    else if (!sum.has_filter || !plan_has(tracer->plan, FEATURE_TRANSPARENT_SHADOWS))
         out->shadow = SHADOW_BLOCK;
     else
         out->shadow = sum.has_filter_besides_targets ? SHADOW_FILTER : SHADOW_TARGET;

@@ -30,7 +30,8 @@ static inline void lit_listen(void *ctx, const char *text)
 }
 
 /* Read a scene and make its plan and tracer. */
-static inline void lit_read(LitScene *lit, const char *text, int threads, uint64_t seed)
+static inline void lit_read_as(LitScene *lit, const char *text, int threads, uint64_t seed,
+                               PlanOptions plan_options)
 {
     memset(lit, 0, sizeof *lit);
     diag_init(&lit->diag, lit_listen, lit);
@@ -40,11 +41,15 @@ static inline void lit_read(LitScene *lit, const char *text, int threads, uint64
     if (status != OK)
         print_message("%s", lit->messages);
     assert_int_equal(status, OK);
-    PlanOptions plan_options = PLAN_OPTIONS_DEFAULT;
     assert_int_equal(plan_make(lit->scene, &plan_options, lit->scene->arena, &lit->plan), OK);
     assert_int_equal(tracer_new(lit->scene, &lit->plan, 1, &lit->diag, &lit->tracer), OK);
     lit->options = (PhotonOptions){.seed = seed, .threads = threads};
     lit->scratch = gather_scratch_new();
+}
+
+static inline void lit_read(LitScene *lit, const char *text, int threads, uint64_t seed)
+{
+    lit_read_as(lit, text, threads, seed, PLAN_OPTIONS_DEFAULT);
 }
 
 /* Read a scene and run its photon pass. */

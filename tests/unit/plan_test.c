@@ -173,6 +173,66 @@ static void indirect_light_replaces_ambient(void **state)
     assert_true(s->plan.has_ambient);
 }
 
+static const PlanOptions paths = {.integrator = INTEGRATOR_PATH, .quality = 9};
+
+static void paths_take_the_place_of_maps(void **state)
+{
+    Small *s = *state;
+    make_glass(s);
+    s->scene.settings.photons.is_on = true;
+    s->scene.settings.pms.has_indirect = true;
+    assert_true(has(s, paths, FEATURE_PATHS));
+    for (int i = 0; i < 2; i++) {
+        const PlanRow *row = &s->plan.rows[i ? FEATURE_GLOBAL_MAP : FEATURE_CAUSTIC_MAP];
+        assert_false(row->is_on);
+        assert_string_equal(row->reason, "path tracing finds that light itself");
+    }
+    assert_false(s->plan.has_ambient || s->plan.light_makes_caustics[0]);
+    assert_false(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_PATHS));
+    assert_false(has(s, (PlanOptions){.integrator = INTEGRATOR_PATH, .quality = 8}, FEATURE_PATHS));
+    assert_true(s->plan.has_ambient);
+}
+
+static void paths_want_lights_of_a_size(void **state)
+{
+    Small *s = *state;
+    PlanOptions wide = paths;
+    wide.light_radius = 0.5;
+    assert_false(has(s, paths, FEATURE_PATH_CAUSTICS));
+    assert_int_equal(s->plan.unmet_lights, 0);
+    s->surface.may_reflect = true;
+    assert_false(has(s, paths, FEATURE_PATH_CAUSTICS));
+    assert_int_equal(s->plan.unmet_lights, 1);
+    assert_int_equal(s->plan.rows[FEATURE_PATH_CAUSTICS].why.begin, 2);
+    assert_true(has(s, wide, FEATURE_PATH_CAUSTICS));
+    assert_int_equal(s->plan.unmet_lights, 0);
+    s->light.area = (AreaLight){.size1 = 2, .size2 = 2};
+    assert_true(has(s, paths, FEATURE_PATH_CAUSTICS));
+    s->light.is_parallel = true;
+    assert_false(has(s, paths, FEATURE_PATH_CAUSTICS));
+    s->light.is_parallel = false;
+    s->light.area.size2 = 1;
+    assert_false(has(s, paths, FEATURE_PATH_CAUSTICS));
+    s->light.is_shadowless = true;
+    assert_false(has(s, wide, FEATURE_PATH_CAUSTICS));
+    assert_int_equal(s->plan.unmet_lights, 0);
+}
+
+static void paths_leave_filters_to_shadow_rays(void **state)
+{
+    Small *s = *state;
+    s->surface.may_transmit = true;
+    assert_false(has(s, paths, FEATURE_TRANSPARENT_SHADOWS));
+    assert_false(plan_filters_shadow(&s->plan, &s->surface));
+    s->surface.is_filter = true;
+    assert_true(has(s, paths, FEATURE_TRANSPARENT_SHADOWS));
+    assert_true(plan_filters_shadow(&s->plan, &s->surface));
+    assert_false(has(s, paths, FEATURE_PATH_CAUSTICS));
+    s->surface.is_filter = false;
+    assert_true(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_TRANSPARENT_SHADOWS));
+    assert_true(plan_filters_shadow(&s->plan, &s->surface));
+}
+
 static void transparent_shadows_want_a_transparent_blocker(void **state)
 {
     Small *s = *state;
@@ -242,6 +302,9 @@ int main(void)
         PLAN_TEST(on_at_object_or_light_counts_and_off_at_either_wins),
         PLAN_TEST(no_specular_surface_no_photon_pass),
         PLAN_TEST(indirect_light_replaces_ambient),
+        PLAN_TEST(paths_take_the_place_of_maps),
+        PLAN_TEST(paths_want_lights_of_a_size),
+        PLAN_TEST(paths_leave_filters_to_shadow_rays),
         PLAN_TEST(transparent_shadows_want_a_transparent_blocker),
         PLAN_TEST(quality_switches_effects_off),
         PLAN_TEST(highlights_want_a_light_that_makes_them),

@@ -477,6 +477,34 @@ static void test_specular_objects_become_targets_when_none_is_marked(void **stat
     world_free(w);
 }
 
+static Node *ball_of(World *w, double ior, float caustics)
+{
+    Node *node = ball(w, v3(0, 0, 0));
+    Interior interior = {.ior = ior, .caustics = caustics};
+    node->interior = arena_copy(w->scene->arena, &interior, sizeof interior);
+    return node;
+}
+
+static void test_filters_bend_nothing_and_take_nothing_for_a_mirror(void **state)
+{
+    (void)state;
+    World *w = world_new();
+    scene_build_add(&w->build, ball(w, v3(0, 0, 0)));
+    scene_build_add(&w->build, ball_of(w, 1, 0));
+    scene_build_add(&w->build, ball_of(w, 1.5, 0));
+    scene_build_add(&w->build, ball_of(w, 1, 0.5f));
+    scene_build_add(&w->build, mirror_ball(w, v3(0, 0, 0)));
+    Node *saving = mirror_ball(w, v3(0, 0, 0));
+    Finish *finish_of_it = (Finish *)(uintptr_t)saving->texture->layers[0].finish;
+    finish_of_it->conserves_energy = true;
+    scene_build_add(&w->build, saving);
+    assert_int_equal(finish(w), OK);
+    const Surface *s = w->scene->surfaces;
+    assert_true(s[0].is_filter && s[1].is_filter && s[4].is_filter);
+    assert_false(s[2].is_filter || s[3].is_filter || s[5].is_filter);
+    world_free(w);
+}
+
 static void test_no_target_without_photons(void **state)
 {
     (void)state;
@@ -563,6 +591,7 @@ int main(void)
         cmocka_unit_test(test_light_moves_with_its_aim_and_area),
         cmocka_unit_test(test_user_bounds_serve_infinite_objects_only),
         cmocka_unit_test(test_specular_objects_become_targets_when_none_is_marked),
+        cmocka_unit_test(test_filters_bend_nothing_and_take_nothing_for_a_mirror),
         cmocka_unit_test(test_no_target_without_photons),
         cmocka_unit_test(test_marked_target_rules_out_the_others),
         cmocka_unit_test(test_problems_of_camera_and_lights),

@@ -71,6 +71,7 @@ static void test_visibility_by_kind(void **state)
         assert_int_equal(trace_closest(&w.thread, &ray, RAY_REFRACTED, &hit), !(mask & 1));
         assert_int_equal(trace_closest(&w.thread, &ray, RAY_PHOTON, &hit), !(mask & 5));
         assert_int_equal(trace_closest(&w.thread, &ray, RAY_REFLECTED, &hit), !(mask & 2));
+        assert_int_equal(trace_closest(&w.thread, &ray, RAY_DIFFUSE, &hit), !(mask & 4));
         Rgb light = trace_shadow(&w.thread, &from, v3(0, 0, 1), 20, 0, false);
         assert_true(light.r == (mask & 4 ? 1.0f : 0.0f));
         assert_int_equal(w.thread.stats.count[STAT_CAMERA_RAYS], 1);

@@ -1,0 +1,316 @@
+/* The path tracer: all the light of a picture by following paths from the eye, one a sample.
+ *
+ * It is here to be compared with: it shares scene, rays, surfaces and direct light with the rest
+ * of the eye pass, and nothing with the photons.  At each surface the path takes what that gives
+ * off and the direct light on it, and goes on in one direction, chosen by how much of the light
+ * comes from there; what it finds counts for the inverse of the chance it had.  The mean over
+ * paths is then the light itself, but for reflection exponents: they bend what one path sees,
+ * and the mean of powers is not the power of the mean.
+ *
+ * Light that comes straight from a light is direct light, by a shadow ray.  Light that comes over
+ * mirrors and lenses, where shadow rays are blocked, is found by a path that happens to meet the
+ * light; so lights need a size for it (light_meet).  What passes from one medium into another is
+ * squeezed by the square of their ior, except between the eye and the first diffuse surface,
+ * where the language does not: so the light on a surface under water is what photons bring.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "eye/eye_int.h"
+
+#include "base/work.h"
+#include "math/sample.h"
+
+enum {
+    PATH_SURFACES_MAX = 10000, /* between mirrors that lose nothing a path has no end but this */
+    ROULETTE_FROM = 4,         /* surfaces passed before a path of little weight may be ended */
+    ROOTS_MAX = 16             /* reflections with an exponent; more are taken to have none */
+};
+
+/* A reflection whose light is bent by an exponent once the rest of the path is known. */
+typedef struct Root {
+    Radiance before; /* found before it */
+    Rgb weight;
+    float exponent;
+} Root;
+
+/* A path on its way. */
+typedef struct Path {
+    Ray ray;
+    RayKind kind;
+    Interiors inside;
+    Rgb weight;       /* of what is met from here on */
+    Rgb shine;        /* of lights met: the same with the highlights of the surface the eye sees */
+    float transmit;   /* the weight of a picture behind everything */
+    int surfaces;     /* met */
+    int diffuse;      /* diffuse ones that it left */
+    double length;    /* gone since it left the last of them, up to the last surface */
+    bool is_mirrored; /* the background it sees is opaque */
+    bool is_shadowed; /* since then it went where shadow rays do not */
+    int root_count;
+    Root roots[ROOTS_MAX];
+} Path;
+
+/* --- what a path finds -------------------------------------------------------------------- */
+
+static Rgb leg_fade(const Path *path, double t)
+{
+    if (path->inside.count == 0)
+        return RGB_WHITE;
+    return interior_fade(path->inside.in[path->inside.count - 1], t, false);
+}
+
+static void weigh(Path *path, Rgb factor)
+{
+    path->weight = rgb_mul(path->weight, factor);
+    path->shine = rgb_mul(path->shine, factor);
+}
+
+/* Add the lights met before t that no shadow ray has brought. */
+static void add_met_lights(const EyeThread *eye, const Path *path, double t, Radiance *out)
+{
+    if (path->diffuse == 0 || !path->is_shadowed)
+        return;
+    bool is_caustic = path->diffuse == 1;
+    for (int i = 0; i < eye->light_count; i++) {
+        LightMeeting met;
+        const EyeLight *light = &eye->lights[i];
+        if (!light->has_shadow ||
+            !light_meet(light->light, eye->plan->light_radius, &path->ray, t, path->length, &met))
+            continue;
+        Rgb weight = is_caustic ? path->shine : path->weight;
+        weight = rgb_mul(weight, leg_fade(path, met.t));
+        add_part(out, is_caustic ? PART_CAUSTIC : PART_INDIRECT, weight, met.radiance);
+    }
+}
+
+static LightPart part_of(const Path *path)
+{
+    return path->diffuse == 0 ? PART_DIRECT : PART_INDIRECT;
+}
+
+static void add_sky(const EyeThread *eye, const Path *path, Radiance *out)
+{
+    float behind;
+    Rgb sky = sky_light(eye, path->ray.d, path->is_mirrored, &behind);
+    add_part(out, part_of(path), path->weight, sky);
+    out->transmit = path->transmit * behind;
+}
+
+/* Highlights are for the eye: between surfaces they would send on more light than comes. */
+static void add_surface(EyeThread *eye, const Path *path, const SurfaceSample *s, Radiance *out)
+{
+    Rgb light = own_light(eye, s);
+    if (plan_has(eye->plan, FEATURE_LIGHTS))
+        light = rgb_add(light, direct_light(eye, s, path->diffuse == 0));
+    add_part(out, part_of(path), path->weight, light);
+}
+
+/* --- where it goes on --------------------------------------------------------------------- */
+
+/* How much light comes to the eye from each side, roughly for the diffuse one. */
+typedef struct Odds {
+    float transmit, diffuse, reflect[SURFACE_LAYERS_MAX], sum;
+} Odds;
+
+static float amount(Rgb c)
+{
+    return fabsf(c.r) + fabsf(c.g) + fabsf(c.b);
+}
+
+static void set_odds(const EyeThread *eye, const SurfaceSample *s, Odds *out)
+{
+    bool is_reflecting = plan_has(eye->plan, FEATURE_REFLECTION);
+    *out = (Odds){.transmit = 0};
+    if (s->has_transmission && plan_has(eye->plan, FEATURE_REFRACTION))
+        out->transmit = s->is_total_reflection ? 3 : amount(s->filter);
+    out->sum = out->transmit;
+    for (int i = 0; i < s->layer_count; i++) {
+        const SurfaceLayer *layer = &s->layers[i];
+        const Finish *finish = layer->finish;
+        out->reflect[i] = is_reflecting ? amount(layer->reflect) : 0;
+        float matt = layer->opacity * (fabsf(finish->diffuse) + fabsf(finish->diffuse_back));
+        out->diffuse += amount(rgb_scale(rgb_mul(layer->above, layer->color), matt));
+        out->sum += out->reflect[i];
+    }
+    out->sum += out->diffuse;
+}
+
+/* What a choice of probability p makes of the share it is for. */
+static void take(Path *path, Rgb share, float p)
+{
+    weigh(path, rgb_scale(share, 1 / p));
+}
+
+/* Do shadow rays stop at one of the surfaces that were hit? */
+static bool stops_shadow_rays(const EyeThread *eye, const Hit *hit)
+{
+    bool passes = plan_filters_shadow(eye->plan, hit->surface);
+    for (int i = 0; i < hit->tie_count; i++) {
+        const Surface *surface = &eye->scene->surfaces[hit->ties[i].crossing.leaf->surface];
+        passes = passes && plan_filters_shadow(eye->plan, surface);
+    }
+    return !passes;
+}
+
+static void go_through(const EyeThread *eye, Path *path, const Hit *hit, const SurfaceSample *s,
+                       float p)
+{
+    path->ray = trace_ray_from(&s->at, s->transmit_dir);
+    if (s->is_total_reflection) {
+        take(path, RGB_WHITE, p);
+        path->transmit = 0;
+        path->is_mirrored = path->is_shadowed = true;
+    } else {
+        take(path, s->filter, p);
+        path->transmit *= rgb_grey(s->filter) / p;
+        path->inside = s->inside_after;
+        path->is_shadowed = path->is_shadowed || stops_shadow_rays(eye, hit);
+        if (path->diffuse > 0)
+            weigh(path, rgb_gray((float)(s->ior_ratio * s->ior_ratio)));
+    }
+    if (path->diffuse == 0)
+        path->kind = path->is_mirrored ? RAY_REFLECTED : RAY_REFRACTED;
+}
+
+static void reflect(Path *path, const SurfaceSample *s, const SurfaceLayer *layer, float p,
+                    Radiance *out)
+{
+    path->ray = trace_ray_from(&s->at, layer->reflect_dir);
+    take(path, layer->reflect, p);
+    path->transmit = 0;
+    path->is_mirrored = path->is_shadowed = true;
+    if (path->diffuse == 0)
+        path->kind = RAY_REFLECTED;
+    if (layer->finish->reflection_exponent == 1 || path->root_count == ROOTS_MAX)
+        return;
+    path->roots[path->root_count++] =
+        (Root){*out, path->weight, layer->finish->reflection_exponent};
+    *out = (Radiance){.transmit = 0};
+    path->weight = path->shine = RGB_WHITE;
+}
+
+static bool shows_light_from_behind(const SurfaceSample *s)
+{
+    bool does = s->surface->is_double_illuminated;
+    for (int i = 0; i < s->layer_count; i++)
+        does = does || s->layers[i].finish->diffuse_back != 0;
+    return does;
+}
+
+/* Leave in a direction whose density is its cosine / pi; returns false if no light can come from
+ * there. */
+static bool bounce(EyeThread *eye, Path *path, const SurfaceSample *s, float p)
+{
+    V2 u = path->diffuse == 0 ? sample_2d(eye->path.index, eye->path.bounce)
+                              : (V2){rng_double(&eye->rng), rng_double(&eye->rng)};
+    V3 local = warp_cosine(u), d = warp_to_frame(local, s->layers[0].n);
+    double weight = 1 / (local.z * (double)p), side = 1;
+    if (shows_light_from_behind(s)) {
+        weight *= 2;
+        side = rng_double(&eye->rng) < 0.5 ? 1 : -1;
+        d = v3_scale(d, side);
+    }
+    if (!(local.z > 0) || !(side * v3_dot(d, s->ng) > 0))
+        return false;
+    Rgb matt = rgb_scale(layers_direct(s, d, false), (float)weight), shiny = matt;
+    if (path->diffuse == 0 && plan_has(eye->plan, FEATURE_HIGHLIGHTS))
+        shiny = rgb_scale(layers_direct(s, d, true), (float)weight);
+    path->shine = rgb_mul(path->weight, shiny);
+    path->weight = rgb_mul(path->weight, matt);
+    path->ray = trace_ray_from(&s->at, d);
+    path->kind = RAY_DIFFUSE;
+    path->transmit = 0;
+    path->diffuse++;
+    path->length = 0;
+    path->is_mirrored = true;
+    path->is_shadowed = false;
+    return true;
+}
+
+/* The first choice of a pixel's paths is stratified over them. */
+static double next_choice(EyeThread *eye, const Path *path)
+{
+    return path->surfaces == 1 ? sample_1d(eye->path.index, eye->path.choice)
+                               : rng_double(&eye->rng);
+}
+
+/* Go on from a surface; returns false if the path ends there. */
+static bool leave(EyeThread *eye, Path *path, const Hit *hit, const SurfaceSample *s, Radiance *out)
+{
+    Odds odds;
+    set_odds(eye, s, &odds);
+    if (!(odds.sum > 0))
+        return false;
+    double x = next_choice(eye, path) * (double)odds.sum;
+    if (x < (double)odds.transmit) {
+        go_through(eye, path, hit, s, odds.transmit / odds.sum);
+        return true;
+    }
+    x -= (double)odds.transmit;
+    for (int i = 0; i < s->layer_count; i++) {
+        if (x < (double)odds.reflect[i]) {
+            reflect(path, s, &s->layers[i], odds.reflect[i] / odds.sum, out);
+            return true;
+        }
+        x -= (double)odds.reflect[i];
+    }
+    return odds.diffuse > 0 && bounce(eye, path, s, odds.diffuse / odds.sum);
+}
+
+/* End paths of little weight, by a chance that the others make up for. */
+static bool survives(EyeThread *eye, Path *path)
+{
+    float most = fmaxf(rgb_max_abs(path->weight), rgb_max_abs(path->shine));
+    if (path->surfaces < ROULETTE_FROM || most >= 1)
+        return most > 0;
+    if (!(rng_double(&eye->rng) < (double)most))
+        return false;
+    weigh(path, rgb_gray(1 / most));
+    return true;
+}
+
+/* --- the path ------------------------------------------------------------------------------ */
+
+/* Bend what was seen in reflections with an exponent, the last first. */
+static void take_roots(Path *path, Radiance *out)
+{
+    while (path->root_count > 0) {
+        const Root *root = &path->roots[--path->root_count];
+        Radiance seen = *out;
+        apply_exponent(&seen, root->exponent);
+        *out = root->before;
+        for (int i = 0; i < PART_COUNT; i++)
+            add_part(out, (LightPart)i, root->weight, seen.part[i]);
+    }
+}
+
+void path_radiance(EyeThread *eye, const Ray *ray, const Interiors *interiors, Radiance *out,
+                   EyeSample *first)
+{
+    Path path = {.ray = *ray,
+                 .kind = RAY_CAMERA,
+                 .inside = *interiors,
+                 .weight = RGB_WHITE,
+                 .shine = RGB_WHITE,
+                 .transmit = 1};
+    *out = (Radiance){.transmit = 0};
+    bool goes_on = true;
+    while (goes_on && path.surfaces < PATH_SURFACES_MAX && !work_interrupted) {
+        Hit hit;
+        SurfaceSample s;
+        bool is_hit = trace_closest(&eye->trace, &path.ray, path.kind, &hit);
+        add_met_lights(eye, &path, is_hit ? hit.t : INFINITY, out);
+        if (!is_hit) {
+            add_sky(eye, &path, out);
+            break;
+        }
+        weigh(&path, leg_fade(&path, hit.t));
+        path.length += hit.t;
+        surface_sample(&eye->trace, &path.ray, &hit, &path.inside, &s);
+        if (path.surfaces++ == 0)
+            describe_first(&hit, &s, first);
+        add_surface(eye, &path, &s, out);
+        goes_on = leave(eye, &path, &hit, &s, out) && survives(eye, &path);
+    }
+    if (goes_on && path.surfaces == PATH_SURFACES_MAX)
+        eye->trace.stats.count[STAT_TRACE_LIMIT]++;
+    take_roots(&path, out);
+}
