@@ -8,6 +8,7 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "photon/photon_map_int.h"
 
+#include "base/hash.h"
 #include "base/mem.h"
 #include "base/work.h"
 #include "photon/lanes_int.h"
@@ -332,19 +333,6 @@ Photon photon_map_at(const PhotonMap *map, size_t index)
         (uint8_t)block->from[i],
         (uint8_t)(block->from[i] >> 8),
         block->flags[i]};
-}
-
-static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t size)
-{
-    const unsigned char *at = bytes;
-    for (; size >= 8; at += 8, size -= 8) {
-        uint64_t word;
-        memcpy(&word, at, 8);
-        hash = rng_mix(hash ^ word) + 0x9e3779b97f4a7c15u;
-    }
-    uint64_t rest = 0;
-    memcpy(&rest, at, size);
-    return rng_mix(hash ^ rest);
 }
 
 uint64_t photon_map_hash(const PhotonMap *map)

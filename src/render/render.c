@@ -1,106 +1,16 @@
-/* One render: plan, ray index, photon pass, eye pass, image.
- * SPDX-License-Identifier: Apache-2.0 */
+/* One render: plan, ray index, pass, image.  SPDX-License-Identifier: Apache-2.0 */
 #include "render/render.h"
 
-#include "base/rng.h"
 #include "base/work.h"
-#include "render/tiles.h"
+#include "render/pass.h"
 
-#include <string.h>
-
-/* Photons whose surface is turned further from the surface at hand than this (its cosine) lie
- * on another one: walls of a corner do not light each other. */
-#define GATHER_NORMAL_COSINE 0.5
-
-/* --- photons -------------------------------------------------------------------------------- */
-
-static void photon_progress(void *ctx, double fraction)
-{
-    const RenderOptions *options = ctx;
-    RenderProgress progress = {"photons", fraction < 1 ? fraction : 1 - 0x1p-20, -1};
-    options->progress(options->progress_ctx, &progress);
-}
-
-static PhotonOptions photon_options(const RenderOptions *options)
-{
-    return (PhotonOptions){.seed = options->seed,
-                           .threads = options->threads,
-                           .progress = options->progress ? photon_progress : NULL,
-                           .progress_ctx = (void *)(uintptr_t)options};
-}
-
-static bool needs_photons(const Plan *plan)
-{
-    return plan_has(plan, FEATURE_CAUSTIC_MAP) || plan_has(plan, FEATURE_GLOBAL_MAP);
-}
-
-static GatherLimits gather_limits(const SceneSettings *settings, double radius)
-{
-    const PhotonSettings *photons = &settings->photons;
-    return (GatherLimits){.min_photons = photons->gather_min,
-                          .max_photons = gather_most(photons),
-                          .max_radius = radius,
-                          .shape = settings->pms.gather_shape,
-                          .kernel = settings->pms.kernel,
-                          .normal_cosine = GATHER_NORMAL_COSINE};
-}
-
-/* Return a number that differs when any byte of the map does; 0 is kept for no map. */
-static uint64_t map_hash(const PhotonMap *map)
-{
-    return map ? photon_map_hash(map) : 0;
-}
-
-/* --- the render ----------------------------------------------------------------------------- */
-
-typedef struct Render {
-    const Scene *scene;
-    const RenderOptions *options;
-    Diag *diag;
-    Tracer *tracer;
-    PhotonMaps maps;
-    PhotonReach caustic_reach;
-    Film film;
-    RenderResult *out;
-} Render;
-
-static Status make_tracer(Render *r, const Plan *plan)
+static Status make_tracer(const Scene *scene, const RenderOptions *options, Diag *diag,
+                          RenderResult *out, Tracer **tracer)
 {
     double started = clock_wall();
-    Status status = tracer_new(r->scene, plan, r->options->threads, r->diag, &r->tracer);
-    r->out->stats.seconds[PHASE_INDEX] += clock_wall() - started;
+    Status status = tracer_new(scene, &out->plan, options->threads, diag, tracer);
+    out->stats.seconds[PHASE_INDEX] += clock_wall() - started;
     return status;
-}
-
-static Status make_maps(Render *r)
-{
-    if (!needs_photons(&r->out->plan))
-        return OK;
-    PhotonOptions options = photon_options(r->options);
-    TRY(photon_pass(r->tracer, &options, r->diag, &r->out->stats, &r->maps));
-    if (!r->maps.caustic)
-        return OK;
-    GatherLimits limits = gather_limits(&r->scene->settings, r->maps.caustic_radius);
-    double radius = limits.max_radius * (limits.min_photons > 0 ? GATHER_WIDEN : 1);
-    return photon_reach_init(&r->caustic_reach, r->maps.caustic, radius, r->diag);
-}
-
-static Status make_image(Render *r)
-{
-    const SceneSettings *settings = &r->scene->settings;
-    EyeOptions eye = {.width = r->options->width,
-                      .height = r->options->height,
-                      .has_alpha = r->options->has_alpha,
-                      .seed = r->options->seed,
-                      .caustic = r->maps.caustic,
-                      .global = r->maps.global,
-                      .caustic_reach = &r->caustic_reach,
-                      .caustic_limits = gather_limits(settings, r->maps.caustic_radius),
-                      .global_limits = gather_limits(settings, r->maps.global_radius)};
-    TRY(film_init(&r->film, r->options, r->diag));
-    TRY(tiles_render(r->tracer, r->options, &eye, r->diag, &r->out->stats, &r->film));
-    film_linearize(&r->film, settings);
-    return OK;
 }
 
 static void report_end(const RenderOptions *options)
@@ -110,13 +20,32 @@ static void report_end(const RenderOptions *options)
         options->progress(options->progress_ctx, &progress);
 }
 
-static Status run(Render *r)
+/* Hand image and what else a pass left to the result. */
+static void take_result(Film *film, PassResult *pass, RenderResult *out)
 {
-    TRY(make_tracer(r, &r->out->plan));
-    TRY(make_maps(r));
-    TRY(make_image(r));
-    report_end(r->options);
-    return OK;
+    out->image = film->image;
+    out->caustic_hash = pass->caustic_hash;
+    out->global_hash = pass->global_hash;
+    out->books = pass->books;
+    film->image = (Image){0};
+    pass->books = (PhotonBooks){0};
+}
+
+static Status render_once(const Tracer *tracer, const RenderOptions *options, Diag *diag,
+                          RenderResult *out)
+{
+    Film film;
+    PassResult result;
+    PassOptions pass = {.render = options, .photon_seed = options->seed};
+    TRY(film_init(&film, options, diag));
+    Status status = pass_render(tracer, &pass, diag, &out->stats, &film, &result);
+    if (status == OK) {
+        film_linearize(&film, &tracer_scene(tracer)->settings);
+        report_end(options);
+        take_result(&film, &result, out);
+    }
+    film_done(&film);
+    return status;
 }
 
 static Status check_options(const RenderOptions *options, Diag *diag)
@@ -142,25 +71,16 @@ static void warn_of_missing(const Plan *plan, Diag *diag)
 
 Status render_scene(const Scene *scene, const RenderOptions *options, Diag *diag, RenderResult *out)
 {
-    Render r = {.scene = scene, .options = options, .diag = diag, .out = out};
+    Tracer *tracer = NULL;
     *out = (RenderResult){0};
     TRY(check_options(options, diag));
     if (plan_make(scene, &options->plan, scene->arena, &out->plan) != OK)
         return diag_no_memory(diag, "the plan");
     warn_of_missing(&out->plan, diag);
-    Status status = run(&r);
-    if (status == OK) {
-        out->image = r.film.image;
-        r.film.image = (Image){0};
-        out->caustic_hash = map_hash(r.maps.caustic);
-        out->global_hash = map_hash(r.maps.global);
-        out->books = r.maps.books;
-        r.maps.books = (PhotonBooks){0};
-    }
-    film_done(&r.film);
-    photon_reach_done(&r.caustic_reach);
-    photon_maps_done(&r.maps);
-    tracer_free(r.tracer);
+    Status status = make_tracer(scene, options, diag, out, &tracer);
+    if (status == OK)
+        status = render_once(tracer, options, diag, out);
+    tracer_free(tracer);
     return status;
 }
 
@@ -176,12 +96,12 @@ Status render_explain(const Scene *scene, const RenderOptions *options, Diag *di
     *books = (PhotonBooks){0};
     if (plan_make(scene, &options->plan, arena, plan) != OK)
         return diag_no_memory(diag, "the plan");
-    if (!needs_photons(plan))
+    if (!pass_needs_photons(plan))
         return OK;
     Tracer *tracer = NULL;
     Status status = tracer_new(scene, plan, options->threads, diag, &tracer);
     if (status == OK) {
-        PhotonOptions photons = photon_options(options);
+        PhotonOptions photons = pass_photon_options(options, options->seed);
         photons.progress = NULL;
         status = photon_plan_budgets(tracer, &photons, diag, books);
     }

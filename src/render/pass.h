@@ -1,0 +1,31 @@
+/* One pass: photons from the lights into the maps, rays from the eye onto the film.  A render is
+ * one of them, a progressive one the mean of many.  SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_RENDER_PASS_H
+#define PMS_RENDER_PASS_H
+
+#include "render/film.h"
+
+typedef struct PassOptions {
+    const RenderOptions *render;
+    uint64_t photon_seed;
+} PassOptions;
+
+/* What a pass leaves beside the picture.  Free with pass_result_done. */
+typedef struct PassResult {
+    PhotonBooks books;
+    uint64_t caustic_hash, global_hash; /* of the photon maps' bytes, 0: no map */
+} PassResult;
+
+/* Run a pass into `film`, which is there.  Counters are added to *stats.  After a failure the
+ * film holds some of the picture, and *out nothing. */
+Status pass_render(const Tracer *tracer, const PassOptions *options, Diag *diag, Stats *stats,
+                   Film *film, PassResult *out);
+void pass_result_done(PassResult *result);
+
+/* Return true if the plan calls for photons at all. */
+bool pass_needs_photons(const Plan *plan);
+
+/* Return the options of the photons of a pass; progress is reported to those of the render. */
+PhotonOptions pass_photon_options(const RenderOptions *options, uint64_t seed);
+
+#endif
