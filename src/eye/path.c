@@ -19,10 +19,14 @@
 #include "math/sample.h"
 
 enum {
-    PATH_SURFACES_MAX = 10000, /* between mirrors that lose nothing a path has no end but this */
+    PATH_SURFACES_MAX = 10000, /* a guard; few paths come near it */
     ROULETTE_FROM = 4,         /* surfaces passed before a path of little weight may be ended */
+    LONG_PATH = 64,            /* surfaces passed before any path may be */
     ROOTS_MAX = 16             /* reflections with an exponent; more are taken to have none */
 };
+
+/* The chance of a long path at each surface: mirrors that lose nothing would keep it for ever. */
+#define LONG_CHANCE 0.95f
 
 /* A reflection whose light is bent by an exponent once the rest of the path is known. */
 typedef struct Root {
@@ -255,15 +259,18 @@ static bool leave(EyeThread *eye, Path *path, const Hit *hit, const SurfaceSampl
     return odds.diffuse > 0 && bounce(eye, path, s, odds.diffuse / odds.sum);
 }
 
-/* End paths of little weight, by a chance that the others make up for. */
+/* End paths of little weight, and endless ones, by a chance that the others make up for. */
 static bool survives(EyeThread *eye, Path *path)
 {
     float most = fmaxf(rgb_max_abs(path->weight), rgb_max_abs(path->shine));
-    if (path->surfaces < ROULETTE_FROM || most >= 1)
+    float chance = path->surfaces < ROULETTE_FROM ? 1 : most;
+    if (path->surfaces >= LONG_PATH)
+        chance = fminf(chance, LONG_CHANCE);
+    if (chance >= 1)
         return most > 0;
-    if (!(rng_double(&eye->rng) < (double)most))
+    if (!(rng_double(&eye->rng) < (double)chance))
         return false;
-    weigh(path, rgb_gray(1 / most));
+    weigh(path, rgb_gray(1 / chance));
     return true;
 }
 

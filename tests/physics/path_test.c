@@ -23,6 +23,7 @@ typedef struct Mean {
     double part[PART_COUNT], sum; /* green */
     double part_error[PART_COUNT], error;
     double expected; /* mean of it over the same rays */
+    Stats stats;
 } Mean;
 
 #define HEAD "#version 3.7;\nglobal_settings { assumed_gamma 1 }\n"
@@ -83,7 +84,7 @@ static Mean measure(const char *text, double light_radius, int groups, Expected 
         mean.part[k] /= groups;
     }
     mean.sum /= groups;
-    eye_thread_free(eye, NULL);
+    eye_thread_free(eye, &mean.stats);
     lit_done(&lit);
     return mean;
 }
@@ -194,6 +195,23 @@ static void sphere_half_of_mirror(void **state)
     check("half a mirror", mean.sum, 2.0 / 3, mean.error);
     check("its direct light", mean.part[PART_DIRECT], 1.0 / 3, mean.part_error[PART_DIRECT]);
     check("its caustics", mean.part[PART_CAUSTIC], 1.0 / 9, mean.part_error[PART_CAUSTIC]);
+}
+
+/* Mirrors that lose nothing keep no path for ever.  In a room of them the matt floor, of
+ * reflectance 1/2, is lit by 1 and gets all it sends back: 1/2 * (1 + 1/2 + 1/4 + ...) = 1. */
+static void endless_mirrors(void **state)
+{
+    (void)state;
+    Mean mean = measure(HEAD "camera { location <0,0.5,0> look_at <0,0.6,1> }\n"
+                             "light_source { <0,0.9,0>, rgb 1 parallel point_at 0 }\n"
+                             "box { <-1,0,-1>, <1,1,1> hollow pigment { rgb 0 }\n"
+                             "  finish { diffuse 0 reflection 1 } }\n"
+                             "box { <-1,-1,-1>, <1,0.001,1> pigment { rgb 1 }\n"
+                             "  finish { ambient 0 diffuse 0.5 } }\n",
+                        0, 300, NULL, NULL);
+    check("room of mirrors", mean.sum, 1, mean.error);
+    assert_true(mean.error < 0.02);
+    assert_int_equal(mean.stats.count[STAT_TRACE_LIMIT], 0);
 }
 
 /* --- furnaces -----------------------------------------------------------------------------------
@@ -521,6 +539,7 @@ int main(void)
         cmocka_unit_test(highlights_send_nothing_on),
         cmocka_unit_test(sphere_that_glows),
         cmocka_unit_test(sphere_half_of_mirror),
+        cmocka_unit_test(endless_mirrors),
         cmocka_unit_test(furnace),
         cmocka_unit_test(reflection_exponent),
         cmocka_unit_test(pane_of_ior_1),
