@@ -79,6 +79,19 @@ static void weigh(FoundPhotons *found, GatherKernel kernel, float radius2)
     }
 }
 
+/* Find what an estimate is made of and replace squared distances by kernel weights over pi r^2.
+ * Returns false when there is nothing. */
+static bool find_weights(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
+                         GatherScratch *scratch)
+{
+    float radius2;
+    bool is_widened = photon_search(map, p, n, limits, scratch, &radius2);
+    if (!(radius2 > 0) || scratch->found.count == 0)
+        return false;
+    bool is_softened = is_widened && limits->kernel == KERNEL_FLAT;
+    weigh(&scratch->found, is_softened ? KERNEL_EPANECHNIKOV : limits->kernel, radius2);
+    return true;
+}
 /* Return the power step of a stored photon: 2^(exponent - RGBE_BIAS); the exponents in use
  * make it a normal float, black photons have no mantissa to multiply. */
 static inline float rgbe_step(uint32_t rgbe)
@@ -101,13 +114,10 @@ static inline Rgb rgbe_power(uint32_t rgbe)
 int photon_gather(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
                   GatherScratch *scratch, Rgb *out)
 {
-    float radius2;
-    photon_search(map, p, n, limits, scratch, &radius2);
     FoundPhotons *found = &scratch->found;
     *out = RGB_BLACK;
-    if (!(radius2 > 0) || found->count == 0)
+    if (!find_weights(map, p, n, limits, scratch))
         return 0;
-    weigh(found, limits->kernel, radius2);
     double r = 0, g = 0, b = 0;
     for (size_t i = 0; i < found->count; i++) {
         uint32_t index = found->index[i];
@@ -124,11 +134,9 @@ int photon_gather(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
 int photon_gather_list(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
                        GatherScratch *scratch, const GatheredPhoton **out)
 {
-    float radius2;
-    photon_search(map, p, n, limits, scratch, &radius2);
     FoundPhotons *found = &scratch->found;
     *out = scratch->list;
-    if (!(radius2 > 0))
+    if (!find_weights(map, p, n, limits, scratch))
         return 0;
     if (found->count > scratch->list_capacity) {
         size_t capacity = found->capacity;
@@ -138,7 +146,6 @@ int photon_gather_list(const PhotonMap *map, V3 p, V3 n, const GatherLimits *lim
         scratch->list = list;
         scratch->list_capacity = capacity;
     }
-    weigh(found, limits->kernel, radius2);
     for (size_t i = 0; i < found->count; i++) {
         const PhotonBlock *block = &map->blocks[found->index[i] / BLOCK_PHOTONS];
         uint32_t lane = found->index[i] % BLOCK_PHOTONS;

@@ -7,7 +7,9 @@
  * a point of a sphere has area pi r^2 exactly), so neither is biased by curvature.
  *
  * How much each counts: the photon that sets the radius is left out, the others are weighted by
- * a kernel whose mean over the disk is 1 and divided by pi r^2.  On a uniform field the mean of
+ * a kernel whose mean over the disk is 1 and divided by pi r^2.  A search that had to widen counts
+ * what is far off least (Epanechnikov's kernel instead of none), so that a caustic does not spill
+ * into the dark around it.  On a uniform field the mean of
  * every estimate is then the true irradiance, for any k (a flat sum of all k would be too bright
  * by k/(k-1)).  SPDX-License-Identifier: Apache-2.0 */
 #ifndef PMS_PHOTON_GATHER_H
@@ -21,14 +23,12 @@
 /* Half the thickness of the slab of GATHER_DISK, in radii. */
 #define GATHER_SLAB 0.2
 
-/* How far the search may widen when fewer than min_photons are within max_radius. */
-#define GATHER_WIDEN 3
-
 typedef struct GatherLimits {
     int max_photons;   /* k nearest; 0: everything within max_radius */
-    int min_photons;   /* when fewer are within max_radius, the radius grows to hold so many,
-                          up to GATHER_WIDEN times max_radius; 0: it never grows */
+    int min_photons;   /* when fewer are within max_radius, the radius grows to hold so many, up
+                          to far_radius; 0: it never grows */
     double max_radius; /* scene units; may be infinite if max_photons is not 0 */
+    double far_radius; /* not above max_radius: it never grows */
     GatherShape shape; /* disk: flattened to the surface; sphere */
     GatherKernel kernel;
     double normal_cosine; /* photons whose surface normal is further off are ignored; -1: none

@@ -93,15 +93,55 @@ static Status make_map(const Tracer *tracer, MapKind kind, const PhotonOptions *
     return status;
 }
 
+/* A photon spread over so much that it gives less than this part of the light of the brightest
+ * lamp is not seen as a speck. */
+#define FAINT_PHOTON 4e-3
+
+/* How far a gather widens beyond its radius at least. */
+#define WIDEN 3
+
+/* Return the light of the brightest lamp in the middle of the scene. */
+static float brightest_light(const Scene *scene, V3 middle)
+{
+    float most = 0;
+    for (int i = 0; i < scene->light_count; i++) {
+        const Light *light = &scene->lights[i];
+        double fade = light_fade(light, v3_dist(light->location, middle));
+        most = fmaxf(most, rgb_max(light->color) * (float)fade);
+    }
+    return most;
+}
+
+/* Return the radius at which a photon of mean power is too faint to be a speck. */
+static double faint_radius(const Tracer *tracer, const PhotonMap *map, const LightBooks *books)
+{
+    const Scene *scene = tracer_scene(tracer);
+    Rgb flux = RGB_BLACK;
+    uint64_t stored = 0;
+    for (int i = 0; i < scene->light_count; i++) {
+        flux = rgb_add(flux, books[i].flux_stored);
+        stored += books[i].stored;
+    }
+    double light = (double)brightest_light(scene, photon_map_center(map));
+    if (stored == 0 || !(light > 0))
+        return 0;
+    return sqrt((double)rgb_max(flux) / ((double)stored * light * FAINT_PHOTON* PMS_PI));
+}
+
 static void set_radii(const Tracer *tracer, PhotonMaps *maps)
 {
     const PhotonSettings *settings = &tracer_scene(tracer)->settings.photons;
     int most = gather_most(settings);
-    if (maps->caustic)
+    if (maps->caustic) {
         maps->caustic_radius =
             settings->radius > 0 ? settings->radius : photon_map_radius(maps->caustic, most);
-    if (maps->global)
+        maps->caustic_far = fmax(faint_radius(tracer, maps->caustic, maps->books.caustic),
+                                 WIDEN * maps->caustic_radius);
+    }
+    if (maps->global) {
         maps->global_radius = photon_map_radius(maps->global, most);
+        maps->global_far = WIDEN * maps->global_radius;
+    }
 }
 
 Status photon_pass(const Tracer *tracer, const PhotonOptions *options, Diag *diag, Stats *stats,

@@ -32,6 +32,7 @@ typedef struct PhotonBooks {
 typedef struct PhotonMaps {
     PhotonMap *caustic, *global;          /* NULL: the plan does not call for it */
     double caustic_radius, global_radius; /* gather radii, scene units */
+    double caustic_far, global_far;       /* how far a gather may widen that finds too little */
     PhotonBooks books;
 } PhotonMaps;
 

@@ -316,8 +316,7 @@ static bool search_nearest(Search *search, float start, float most)
         search->radius2 = most;
         return false;
     }
-    search->radius2 =
-        kth_smallest(found->distance2, found->count, search->wanted, search->radius2);
+    search->radius2 = kth_smallest(found->distance2, found->count, search->wanted, search->radius2);
     keep_nearest(found, search->radius2, search->wanted - 1);
     return true;
 }
@@ -346,8 +345,8 @@ static Search make_search(const PhotonMap *map, V3 q, V3 n, const GatherLimits *
                     .found = found,
                     .q = {(float)q.x, (float)q.y, (float)q.z},
                     .n = {(float)n.x, (float)n.y, (float)n.z},
-                    .slab = limits->shape == GATHER_DISK ? (float)(1 / (GATHER_SLAB * GATHER_SLAB))
-                                                         : 0,
+                    .slab =
+                        limits->shape == GATHER_DISK ? (float)(1 / (GATHER_SLAB * GATHER_SLAB)) : 0,
                     .cosine2 = (float)(cosine * fabs(cosine)),
                     .has_normals = cosine > -1};
 }
@@ -359,7 +358,7 @@ static size_t photons_wanted(const FoundPhotons *found, int k)
     return wanted < SIZE_MAX && wanted > found->capacity / 2 ? found->capacity / 2 : wanted;
 }
 
-void photon_search(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
+bool photon_search(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
                    GatherScratch *scratch, float *radius2)
 {
     FoundPhotons *found = &scratch->found;
@@ -369,18 +368,21 @@ void photon_search(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
     found->count = 0;
     *radius2 = most;
     if (!has_room(found, (size_t)k * ROOM_FACTOR + ROOM_MIN) && found->capacity < ROOM_MIN)
-        return;
+        return false;
     if (map->block_count == 0 || !v3_is_finite(q) || !(most >= 0))
-        return;
+        return false;
     Search search = make_search(map, q, n, limits, found);
     search.wanted = photons_wanted(found, limits->max_photons);
     float *guess = guess_at(scratch, map), start = search.wanted < SIZE_MAX ? *guess : most;
     bool is_full = search_nearest(&search, start, most);
     *guess = is_full ? search.radius2 * GUESS_FACTOR : most;
-    if (!is_full && found->count + 1 < (size_t)limits->min_photons && isfinite(most)) {
+    bool is_widened = !is_full && found->count + 1 < (size_t)limits->min_photons &&
+                      limits->far_radius > limits->max_radius;
+    if (is_widened) {
         search.wanted = photons_wanted(found, limits->min_photons);
         start = wider_than(most, found->count, search.wanted);
-        search_nearest(&search, start, most * (GATHER_WIDEN * GATHER_WIDEN));
+        search_nearest(&search, start, (float)(limits->far_radius * limits->far_radius));
     }
     *radius2 = search.radius2;
+    return is_widened;
 }

@@ -22,8 +22,8 @@ struct GatherScratch {
 };
 
 /* Leave in scratch->found the photons an estimate is made from, in the order the tree is walked;
- * *radius2 is the square of the radius they fill. */
-void photon_search(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
+ * *radius2 is the square of the radius they fill.  Returns whether the search had to widen. */
+bool photon_search(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
                    GatherScratch *scratch, float *radius2);
 
 #endif

@@ -38,13 +38,14 @@ bool pass_needs_photons(const Plan *plan)
     return plan_has(plan, FEATURE_CAUSTIC_MAP) || plan_has(plan, FEATURE_GLOBAL_MAP);
 }
 
-static GatherLimits gather_limits(const Pass *pass, double radius)
+static GatherLimits gather_limits(const Pass *pass, double radius, double far_radius)
 {
     const SceneSettings *settings = &tracer_scene(pass->tracer)->settings;
     const PhotonSettings *photons = &settings->photons;
     return (GatherLimits){.min_photons = photons->gather_min,
                           .max_photons = gather_most(photons),
                           .max_radius = radius,
+                          .far_radius = far_radius,
                           .shape = settings->pms.gather_shape,
                           .kernel = settings->pms.kernel,
                           .normal_cosine = GATHER_NORMAL_COSINE};
@@ -58,8 +59,8 @@ static Status make_maps(Pass *pass)
     TRY(photon_pass(pass->tracer, &options, pass->diag, pass->stats, &pass->maps));
     if (!pass->maps.caustic)
         return OK;
-    GatherLimits limits = gather_limits(pass, pass->maps.caustic_radius);
-    double radius = limits.max_radius * (limits.min_photons > 0 ? GATHER_WIDEN : 1);
+    bool is_widening = tracer_scene(pass->tracer)->settings.photons.gather_min > 0;
+    double radius = is_widening ? pass->maps.caustic_far : pass->maps.caustic_radius;
     return photon_reach_init(&pass->caustic_reach, pass->maps.caustic, radius, pass->diag);
 }
 
@@ -68,15 +69,16 @@ static Status make_maps(Pass *pass)
 static Status fill_film(Pass *pass, Film *film)
 {
     const RenderOptions *options = pass->options->render;
-    EyeOptions eye = {.width = options->width,
-                      .height = options->height,
-                      .has_alpha = options->has_alpha,
-                      .seed = options->seed,
-                      .caustic = pass->maps.caustic,
-                      .global = pass->maps.global,
-                      .caustic_reach = &pass->caustic_reach,
-                      .caustic_limits = gather_limits(pass, pass->maps.caustic_radius),
-                      .global_limits = gather_limits(pass, pass->maps.global_radius)};
+    EyeOptions eye = {
+        .width = options->width,
+        .height = options->height,
+        .has_alpha = options->has_alpha,
+        .seed = options->seed,
+        .caustic = pass->maps.caustic,
+        .global = pass->maps.global,
+        .caustic_reach = &pass->caustic_reach,
+        .caustic_limits = gather_limits(pass, pass->maps.caustic_radius, pass->maps.caustic_far),
+        .global_limits = gather_limits(pass, pass->maps.global_radius, pass->maps.global_far)};
     return tiles_render(pass->tracer, options, &eye, pass->diag, pass->stats, film);
 }
 
