@@ -1,7 +1,7 @@
 #!/bin/sh
 # Every figure of `make bench`, measured in one run on this machine: start-up, the photon map
-# against nanoflann, the photon pass against raw Embree rays, threads, whole renders against
-# povray.  Figures depend on what else the machine does: look at the ratios, run it alone.
+# against nanoflann, the photon pass against raw Embree rays, threads, a caustic at equal error
+# against paths and povray, whole renders against povray.  Figures depend on what else the machine does: look at the ratios, run it alone.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 PMS=${PMS:-build/release/pms}
@@ -54,6 +54,9 @@ for name in csg_showpiece caustic_glass; do
     echo "$name ${one% *} ${two% *}" |
         awk '{ printf "  %-22s one %7.3f   two %7.3f   %5.2f times (reach 1.85)\n", $1, $2, $3, $2 / $3 }'
 done
+
+echo
+PMS=$PMS tests/bench/equal_error.pl
 
 command -v povray >/dev/null 2>&1 || exit 0
 echo
