@@ -2,10 +2,6 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "eye/eye_int.h"
 
-/* Photons at glancing angles count as if they came at this cosine: their power is spread over
- * the surface already, and a highlight must not be divided by next to nothing. */
-#define PHOTON_COSINE_MIN 0.1
-
 Rgb layers_direct(const SurfaceSample *s, V3 to_light, bool has_highlights)
 {
     Rgb sum = RGB_BLACK;
@@ -76,12 +72,26 @@ Rgb direct_light(EyeThread *eye, const SurfaceSample *s, bool has_highlights)
 /* Does it matter where light comes from, beyond its cosine? */
 static bool is_directional(const SurfaceSample *s)
 {
-    for (int i = 0; i < s->layer_count; i++) {
-        const Finish *finish = s->layers[i].finish;
-        if (finish->phong != 0 || finish->specular != 0 || finish->brilliance != 1)
+    for (int i = 0; i < s->layer_count; i++)
+        if (s->layers[i].finish->phong != 0 || s->layers[i].finish->specular != 0)
             return true;
+    return surface_has_brilliance(s);
+}
+
+/* The light of a map by finishes whose brilliance weighs where it comes from. */
+static Rgb brilliant_gather(EyeThread *eye, const PhotonMap *map, const GatherLimits *limits,
+                            const SurfaceSample *s)
+{
+    const GatheredPhoton *photons;
+    int count = photon_gather_list(map, s->at.p, s->ng, limits, eye->gather, &photons);
+    eye->trace.stats.count[STAT_GATHERS]++;
+    eye->trace.stats.count[STAT_GATHERED] += (uint64_t)count;
+    Rgb sum = RGB_BLACK;
+    for (int i = 0; i < count; i++) {
+        Rgb reflectance = surface_diffuse_from(s, photons[i].from);
+        sum = rgb_add(sum, rgb_mul(photons[i].irradiance, reflectance));
     }
-    return false;
+    return sum;
 }
 
 static Rgb directional_caustic(EyeThread *eye, const SurfaceSample *s)
@@ -128,7 +138,10 @@ Rgb caustic_light(EyeThread *eye, const SurfaceSample *s)
 
 Rgb indirect_light(EyeThread *eye, const SurfaceSample *s)
 {
-    if (!eye->options.global)
+    const EyeOptions *options = &eye->options;
+    if (!options->global)
         return RGB_BLACK;
-    return diffuse_gather(eye, eye->options.global, &eye->options.global_limits, s);
+    if (surface_has_brilliance(s))
+        return brilliant_gather(eye, options->global, &options->global_limits, s);
+    return diffuse_gather(eye, options->global, &options->global_limits, s);
 }

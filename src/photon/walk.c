@@ -283,7 +283,7 @@ static bool is_beyond_reach(const Walk *walk, const SurfaceSample *s)
 static bool meet_surface(Walk *walk, const SurfaceSample *s, float least, PhotonList *out,
                          WalkResult *result)
 {
-    Rgb diffuse = not_negative(surface_diffuse(s));
+    Rgb diffuse = not_negative(surface_diffuse_from(s, s->wo));
     if (!rgb_is_black(diffuse) && is_beyond_reach(walk, s)) {
         result->end = PATH_CUT;
         return false;

@@ -90,13 +90,36 @@ Rgb layer_direct(const SurfaceLayer *layer, const SurfaceSample *s, V3 to_light,
     return rgb_mul(sum, layer->above);
 }
 
+static Rgb layer_diffuse(const SurfaceLayer *layer)
+{
+    return rgb_scale(rgb_mul(layer->above, layer->color), layer->opacity * layer->finish->diffuse);
+}
+
 Rgb surface_diffuse(const SurfaceSample *s)
+{
+    Rgb sum = RGB_BLACK;
+    for (int i = 0; i < s->layer_count; i++)
+        sum = rgb_add(sum, layer_diffuse(&s->layers[i]));
+    return sum;
+}
+
+Rgb surface_diffuse_from(const SurfaceSample *s, V3 from)
 {
     Rgb sum = RGB_BLACK;
     for (int i = 0; i < s->layer_count; i++) {
         const SurfaceLayer *layer = &s->layers[i];
-        sum = rgb_add(sum, rgb_scale(rgb_mul(layer->above, layer->color),
-                                     layer->opacity * layer->finish->diffuse));
+        double brilliance = (double)layer->finish->brilliance, factor = 1;
+        if (brilliance != 1)
+            factor = pow(fmax(PHOTON_COSINE_MIN, v3_dot(layer->n, from)), brilliance - 1);
+        sum = rgb_mad(sum, (float)factor, layer_diffuse(layer));
     }
     return sum;
+}
+
+bool surface_has_brilliance(const SurfaceSample *s)
+{
+    for (int i = 0; i < s->layer_count; i++)
+        if (s->layers[i].finish->brilliance != 1)
+            return true;
+    return false;
 }

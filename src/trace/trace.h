@@ -183,8 +183,19 @@ double light_fade(const Light *light, double distance);
 Rgb layer_direct(const SurfaceLayer *layer, const SurfaceSample *s, V3 to_light,
                  bool has_highlights, bool is_double_illuminated);
 
-/* Return the diffuse reflectance of all layers together (for irradiance from photons and for
- * the roulette of a photon): sum of above * opacity * color * diffuse. */
+/* Return the diffuse reflectance of all layers together (for irradiance from photons): sum of
+ * above * opacity * color * diffuse. */
 Rgb surface_diffuse(const SurfaceSample *s);
+
+/* Photons at glancing angles count as if they came at this cosine: their power is spread over the
+ * surface already, and what depends on the direction must not be divided by next to nothing. */
+#define PHOTON_COSINE_MIN 0.1
+
+/* Return the diffuse reflectance for light from one direction (unit), as the roulette of a photon
+ * wants it: of a finish with brilliance, cosine^(brilliance - 1) times as much. */
+Rgb surface_diffuse_from(const SurfaceSample *s, V3 from);
+
+/* Return true if that depends on the direction. */
+bool surface_has_brilliance(const SurfaceSample *s);
 
 #endif
