@@ -1,5 +1,6 @@
 #!/usr/bin/perl
-# Equal error on a caustic: how long photons, paths and povray take to be as wrong as each other.
+# Row S16: equal error on a caustic, how long photons, paths and povray take to be as wrong as each
+# other.
 #
 # Error is the root mean square over a rectangle around the caustic, against a picture of very many
 # photons: pms against its own, povray against povray's own, so that neither pays for what the two

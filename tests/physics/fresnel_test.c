@@ -51,6 +51,7 @@ static void sample_block(double ior, double angle, bool is_from_inside, SurfaceS
     world_done(&w);
 }
 
+/* Row S6: the reflectance by which photons and rays are split, and Snell's law. */
 static void test_fresnel_equations(void **state)
 {
     (void)state;
@@ -90,6 +91,7 @@ static void test_brewster_angle(void **state)
     assert_true(fabs(v3_dot(s.layers[0].reflect_dir, s.transmit_dir)) < 1e-15);
 }
 
+/* Row S6: beyond the critical angle all is reflected. */
 static void test_critical_angle(void **state)
 {
     (void)state;

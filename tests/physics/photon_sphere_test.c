@@ -92,7 +92,7 @@ static void other_lights(void **state)
                  8 * (1 - cos(PMS_PI / 3)) / 2);
 }
 
-/* S14: a clear ball of index 1 around the light changes nothing.  As a photon target it casts a
+/* Row S14: a clear ball of index 1 around the light changes nothing.  As a photon target it casts a
  * full shadow and the caustic map brings the direct light; as a mere transparent object it lets
  * shadow rays pass and there is nothing in that map.  Indirect light is the same either way. */
 static void no_path_counts_twice(void **state)

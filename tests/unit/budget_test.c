@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-/* S4, S3: the deck's table.  Powers 9 and 1, 100 photons: 90 and 10, each of power 0.1. */
+/* Row S4: the deck's table.  Powers 9 and 1, 100 photons: 90 and 10.  Row S3: each of power 0.1. */
 static void the_decks_table(void **state)
 {
     (void)state;
@@ -28,7 +28,7 @@ static uint64_t sum_of(const uint64_t *shares, int count)
     return sum;
 }
 
-/* Shares add up exactly and are within one of the exact share. */
+/* Row S4: shares add up exactly and are within one of the exact share. */
 static void shares_add_up(void **state)
 {
     (void)state;
@@ -69,6 +69,7 @@ static void the_largest_remainders_are_rounded_up(void **state)
     assert_int_equal(share[2], 3);
 }
 
+/* Row S4: a light of no power gets no photon. */
 static void lights_without_power_get_none(void **state)
 {
     (void)state;

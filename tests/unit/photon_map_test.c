@@ -118,7 +118,7 @@ static void nothing_is_lost(void **state)
         }
 }
 
-/* S1: the same bytes for any number of threads. */
+/* Row S1: the same bytes for any number of threads. */
 static void threads_make_no_difference(void **state)
 {
     (void)state;
@@ -147,7 +147,55 @@ static void hash_sees_every_change(void **state)
     photon_map_free(c);
 }
 
-/* S10: 20 bytes a photon, at most 2 % more. */
+enum { BLOCK = 16 };
+
+/* Check that some plane parts the photons of the first `left` blocks from the other ones. */
+static void check_cut(const PhotonMap *map, size_t first, size_t left, size_t blocks)
+{
+    float lo[3] = {-INFINITY, -INFINITY, -INFINITY}, hi[3] = {INFINITY, INFINITY, INFINITY};
+    size_t end = (first + blocks) * BLOCK, count = photon_map_count(map);
+    for (size_t i = first * BLOCK; i < end && i < count; i++) {
+        Photon photon = photon_map_at(map, i);
+        for (int a = 0; a < 3; a++)
+            if (i < (first + left) * BLOCK)
+                lo[a] = fmaxf(lo[a], photon.pos[a]);
+            else
+                hi[a] = fminf(hi[a], photon.pos[a]);
+    }
+    assert_true(lo[0] <= hi[0] || lo[1] <= hi[1] || lo[2] <= hi[2]);
+}
+
+/* Walk a left-balanced tree of blocks: its last level is filled from the left.  Returns its depth.
+ */
+static int check_tree(const PhotonMap *map, size_t first, size_t blocks)
+{
+    if (blocks < 2)
+        return 0;
+    size_t level = 1;
+    while (level * 2 <= blocks)
+        level *= 2;
+    size_t deeper = blocks - level, left = level / 2 + (deeper < level / 2 ? deeper : level / 2);
+    check_cut(map, first, left, blocks);
+    int a = check_tree(map, first, left), b = check_tree(map, first + left, blocks - left);
+    return 1 + (a > b ? a : b);
+}
+
+/* Row S10: a kd-tree in one array, as balanced as can be: blocks of 16 photons, at every node cut
+ * by a plane, and no deeper than the logarithm of their number. */
+static void tree_is_balanced(void **state)
+{
+    (void)state;
+    const size_t counts[] = {17, 100, 1000, 4095, 4096, 4097, 50000};
+    for (int place = 0; place < PLACES; place++)
+        for (size_t c = 0; c < sizeof counts / sizeof counts[0]; c++) {
+            PhotonMap *map = make_map(counts[c], places[place], 2);
+            size_t blocks = (counts[c] + BLOCK - 1) / BLOCK;
+            assert_int_equal(check_tree(map, 0, blocks), (int)ceil(log2((double)blocks)));
+            photon_map_free(map);
+        }
+}
+
+/* Row S10: 20 bytes a photon, at most 2 % more. */
 static void memory_is_20_bytes_a_photon(void **state)
 {
     (void)state;
@@ -234,6 +282,7 @@ int main(void)
         cmocka_unit_test(nothing_is_lost),
         cmocka_unit_test(threads_make_no_difference),
         cmocka_unit_test(hash_sees_every_change),
+        cmocka_unit_test(tree_is_balanced),
         cmocka_unit_test(memory_is_20_bytes_a_photon),
         cmocka_unit_test(photons_nowhere_are_dropped),
         cmocka_unit_test(empty_map),

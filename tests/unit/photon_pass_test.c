@@ -86,7 +86,7 @@ static void books_balance(void **state)
     lit_done(&lit);
 }
 
-/* S1: the same maps, byte for byte, and the same books for any number of threads. */
+/* Row S1: the same maps, byte for byte, and the same books for any number of threads. */
 static void threads_make_no_difference(void **state)
 {
     (void)state;
@@ -110,7 +110,7 @@ static void threads_make_no_difference(void **state)
     lit_done(&one);
 }
 
-/* Photons of all lights are alike in power: the mean power of a light's stored photons is
+/* Row S4: photons of all lights are alike in power: the mean power of a light's stored photons is
  * within a factor of two of that of the others. */
 static void powers_are_alike(void **state)
 {
@@ -252,7 +252,8 @@ static void hidden_objects(void **state)
     }
 }
 
-/* The diffuse surface itself, lit directly, keeps nothing: no specular bounce, no caustic. */
+/* Row S11: the diffuse surface itself, lit directly, keeps nothing: no specular bounce, no caustic.
+ */
 static void direct_light_is_not_in_the_map(void **state)
 {
     (void)state;
@@ -270,7 +271,7 @@ static void direct_light_is_not_in_the_map(void **state)
     lit_done(&lit);
 }
 
-/* Every kind of light sends photons, and they come from where the light is. */
+/* Row S2: every kind of light sends photons, and they come from where the light is. */
 static void every_light_emits(void **state)
 {
     (void)state;
@@ -308,6 +309,7 @@ static void every_light_emits(void **state)
     }
 }
 
+/* Row S2: what is dark, shadowless or turned away sends none. */
 static void dark_lights_emit_nothing(void **state)
 {
     (void)state;
