@@ -16,6 +16,7 @@ typedef struct Beam {
     const Object *target; /* NULL: the whole scene */
     V3 center;            /* of a ball around the target, scene units */
     double radius;
+    double reach;          /* a target met further from the centre does not count */
     double spacing_factor; /* the target's */
     double stores;         /* photons expected to be stored for two that are sent */
     int side;              /* cells a side */

@@ -54,15 +54,32 @@ static const Surface *target_surface(const Scene *scene, uint32_t object)
     return NULL;
 }
 
+/* Photons for a target without bounds are sent at what lies within this many radii of the bounded
+ * part of the scene and the camera. */
+#define ENDLESS_TARGET_RADII 2
+
+static void aim_at_endless(Beam *beam, const Emission *emission)
+{
+    const Scene *scene = tracer_scene(emission->tracer);
+    Bound part = bound_add(tracer_bound(emission->tracer), scene->camera.location);
+    beam->center = bound_center(part);
+    beam->reach = beam->radius = bound_radius(part) * ENDLESS_TARGET_RADII;
+}
+
 /* Set what the target's photons{} says of the beam.  `stores` is how many photons the language
  * expects to be stored for two that are sent (measured with POV-Ray: targets that collect
  * store photons themselves, those that reflect and refract split them). */
-static void set_target(Beam *beam, const Scene *scene, uint32_t object)
+static void set_target(Beam *beam, const Emission *emission, uint32_t object)
 {
+    const Scene *scene = tracer_scene(emission->tracer);
     const Surface *surface = target_surface(scene, object);
     beam->target = &scene->objects[object];
     beam->center = bound_center(beam->target->bound);
     beam->radius = bound_radius(beam->target->bound);
+    if (!bound_is_finite(beam->target->bound))
+        aim_at_endless(beam, emission);
+    else
+        beam->reach = INFINITY;
     beam->spacing_factor = beam->stores = 1;
     if (!surface)
         return;
@@ -81,9 +98,9 @@ static bool add_target_beams(Emission *emission, size_t *capacity, Beam beam)
     for (uint32_t i = 0; i < scene->object_count; i++) {
         const Object *object = &scene->objects[i];
         if (!object->is_target || object->no_image || object->no_shadow ||
-            !bound_is_finite(object->bound) || bound_is_empty(object->bound))
+            bound_is_empty(object->bound))
             continue;
-        set_target(&beam, scene, i);
+        set_target(&beam, emission, i);
         if (!add_beam(emission, capacity, &beam))
             return false;
     }

@@ -125,7 +125,7 @@ static double faint_radius(const Tracer *tracer, const PhotonMap *map, const Lig
     double light = (double)brightest_light(scene, photon_map_center(map));
     if (stored == 0 || !(light > 0))
         return 0;
-    return sqrt((double)rgb_max(flux) / ((double)stored * light * FAINT_PHOTON* PMS_PI));
+    return sqrt((double)rgb_max(flux) / ((double)stored * light * FAINT_PHOTON * PMS_PI));
 }
 
 static void set_radii(const Tracer *tracer, PhotonMaps *maps)

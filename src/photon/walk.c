@@ -242,6 +242,12 @@ static bool follow(Walk *walk, const SurfaceSample *s, const Roulette *r, Branch
     return false;
 }
 
+static bool is_target(const Beam *beam, const Hit *hit)
+{
+    return hit->object == beam->target &&
+           (isinf(beam->reach) || v3_dist(hit->point.p, beam->center) <= beam->reach);
+}
+
 /* Go to the next surface.  Returns false, with the end of the path, when there is none to go on
  * from. */
 static bool advance(Walk *walk, Hit *hit, SurfaceSample *s, PathEnd *end)
@@ -253,7 +259,7 @@ static bool advance(Walk *walk, Hit *hit, SurfaceSample *s, PathEnd *end)
     walk->length += hit->t;
     const PhotonFlags *flags = &hit->surface->photons;
     if (!walk->is_aimed && !flags->is_pass_through) {
-        walk->is_aimed = hit->object == walk->beam->target;
+        walk->is_aimed = is_target(walk->beam, hit);
         if (!walk->is_aimed) { /* something is in the way; if a target, it has its own beam */
             *end = PATH_CUT;
             return false;

@@ -62,7 +62,7 @@ const char *feature_text(FeatureId feature)
 
 static bool light_shines(const Light *light)
 {
-    return rgb_max_abs(light->color) > EPS_LANGUAGE;
+    return !rgb_is_black(light->color);
 }
 
 static bool finish_has_highlights(const Finish *finish)

@@ -66,9 +66,20 @@ static bool light_asks(const Scene *scene, bool is_reflection)
 }
 
 /* Photons are sent at the box of an object: one without a box cannot be a target. */
-static bool can_be_target(const Scene *scene, const Surface *s)
+static bool has_bounds(const Scene *scene, const Surface *s)
 {
     return bound_is_finite(scene->objects[s->object].bound);
+}
+
+/* Photons reach only a part of an object without bounds, which would leave the rest in its full
+ * shadow: it reflects them, and lets no photons but shadow rays through. */
+static void mark_endless_target(Surface *s, Diag *diag)
+{
+    if (s->photons.refraction == TRI_ON && s->may_transmit)
+        diag_warn(diag, WARN_RENDER, s->photons.span,
+                  "photons are not sent through an object without bounds: its shadow is filtered "
+                  "instead");
+    s->photons.refraction = TRI_OFF;
 }
 
 static bool mark_written_targets(Scene *scene, Diag *diag)
@@ -80,12 +91,11 @@ static bool mark_written_targets(Scene *scene, Diag *diag)
         if (!s->photons.is_target)
             continue;
         any = true;
-        s->is_target = can_be_target(scene, s);
-        if (!s->is_target)
-            diag_warn(diag, WARN_RENDER, s->photons.span,
-                      "photons cannot be aimed at an object without bounds");
-        else if (s->photons.reflection != TRI_ON && s->photons.refraction != TRI_ON && !reflects &&
-                 !refracts)
+        s->is_target = true;
+        if (!has_bounds(scene, s))
+            mark_endless_target(s, diag);
+        if (s->photons.reflection != TRI_ON && s->photons.refraction != TRI_ON && !reflects &&
+            !refracts)
             diag_warn(diag, WARN_RENDER, s->photons.span,
                       "this photon target has neither reflection nor refraction on, and no light "
                       "asks for them: no photon will leave it");
@@ -102,7 +112,7 @@ static bool mark_specular_targets(Scene *scene)
         bool reflects = s->may_reflect && s->photons.reflection != TRI_OFF;
         bool refracts = s->may_transmit && s->photons.refraction != TRI_OFF &&
                         s->interior->ior != 1 && !s->photons.is_pass_through;
-        if (!can_be_target(scene, s) || !(reflects || refracts))
+        if (!has_bounds(scene, s) || !(reflects || refracts))
             continue;
         s->is_target = any = true;
         if (reflects)
