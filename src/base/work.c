@@ -6,7 +6,7 @@
 #include <sched.h>
 #include <stdatomic.h>
 
-volatile sig_atomic_t work_interrupted = 0;
+volatile sig_atomic_t work_interrupted = 0, work_is_patient = 0, work_ending = 0;
 
 typedef struct Crew {
     WorkFn fn;

@@ -29,4 +29,8 @@ int work_thread_count(void);
 /* Set by the signal handler of the program; read by every long loop. */
 extern volatile sig_atomic_t work_interrupted;
 
+/* A loop of many passes sets work_is_patient; the first Ctrl-C then sets work_ending instead, and
+ * the loop ends when the pass at hand is done. */
+extern volatile sig_atomic_t work_is_patient, work_ending;
+
 #endif

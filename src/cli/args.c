@@ -402,6 +402,7 @@ Status args_render_options(const Args *args, RenderOptions *out)
     TRY(read_layers(args, &out->layers));
     TRY(read_antialiasing(args, out));
     TRY(read_integrator(args, &out->plan));
+    TRY(args_progressive(args, out));
     out->threads = (int)threads;
     out->seed = (uint64_t)seed;
     out->plan.quality = (int)(quality > 9 ? 9 : quality);

@@ -13,4 +13,7 @@ Status args_add_library(Args *args, const char *path);
 Status args_add_operand(Args *args, const char *operand);
 Status args_add_declare(Args *args, const char *text);
 
+/* Fill in what --progressive and the options beside it ask for. */
+Status args_progressive(const Args *args, RenderOptions *out);
+
 #endif

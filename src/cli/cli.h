@@ -84,6 +84,9 @@ Status output_write(const Args *args, const Scene *scene, RenderResult *result,
  * and for PNG files a bad --bits, --ocio, --display or --view. */
 Status output_preflight(const Args *args, const char *const *paths, int path_count);
 
+/* Say early that a file could not be written. */
+Status output_can_write(const Args *args, const char *path);
+
 /* Print a JSON string with its quotes, or a number (null when it is not finite). */
 void json_string(FILE *file, const char *text);
 void json_number(FILE *file, double number);

@@ -2,11 +2,15 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "cli/cli.h"
 
+#include "render/progressive.h"
+
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 typedef struct Explanation {
     const Scene *scene;
+    RenderOptions options;
     Plan plan;
     PhotonBooks books;
 } Explanation;
@@ -45,6 +49,29 @@ static void print_lights(const Explanation *e, const char *map, const LightBooks
                100 * books[i].share, books[i].budget);
 }
 
+/* How many passes there will be, of what. */
+static void print_passes(const Explanation *e)
+{
+    const ProgressiveOptions *progressive = &e->options.progressive;
+    int samples = e->options.samples > 1 ? e->options.samples : 1;
+    if (!plan_has(&e->plan, FEATURE_PROGRESSIVE))
+        return;
+    printf("\npasses: ");
+    if (progressive->passes)
+        printf("%" PRIu64, progressive->passes);
+    if (progressive->seconds > 0)
+        printf("%swhat fits into %g s", progressive->passes ? ", or " : "", progressive->seconds);
+    if (!progressive->passes && !(progressive->seconds > 0))
+        printf("until Ctrl-C");
+    printf("; %d sample%s a pixel in each", samples, samples == 1 ? "" : "s");
+    if (e->books.caustic || e->books.global)
+        printf(", and these photons");
+    if ((e->books.caustic || e->books.global) && progressive->passes)
+        printf("; the last gather radius is %.3g of the first",
+               progressive_shrink(progressive->passes));
+    printf("\n");
+}
+
 static void print_text(const Explanation *e)
 {
     printf("scene %s: %u object%s, %d light%s\n\n", e->scene->path, e->scene->object_count,
@@ -55,6 +82,7 @@ static void print_text(const Explanation *e)
     print_lights(e, "global", e->books.global);
     if (!e->books.caustic && !e->books.global)
         printf("\nno photon pass\n");
+    print_passes(e);
 }
 
 static void print_json_feature(const Explanation *e, int id)
@@ -87,6 +115,20 @@ static void print_json_lights(const Explanation *e, const char *map, const Light
     printf("%s]", books ? "\n  " : "");
 }
 
+static void print_json_passes(const Explanation *e)
+{
+    const ProgressiveOptions *progressive = &e->options.progressive;
+    if (!plan_has(&e->plan, FEATURE_PROGRESSIVE))
+        return;
+    printf(",\n  \"progressive\": {\"passes\": ");
+    json_number(stdout, progressive->passes ? (double)progressive->passes : NAN);
+    printf(", \"seconds\": ");
+    json_number(stdout, progressive->seconds > 0 ? progressive->seconds : NAN);
+    printf(", \"samples\": %d, \"last_radius\": ", e->options.samples > 1 ? e->options.samples : 1);
+    json_number(stdout, progressive->passes ? progressive_shrink(progressive->passes) : NAN);
+    putchar('}');
+}
+
 static void print_json(const Explanation *e)
 {
     printf("{\n  \"scene\": ");
@@ -97,15 +139,15 @@ static void print_json(const Explanation *e)
     printf("\n  ]");
     print_json_lights(e, "caustic", e->books.caustic);
     print_json_lights(e, "global", e->books.global);
+    print_json_passes(e);
     printf("\n}\n");
 }
 
 static Status explain_scene(const Args *args, const Scene *scene)
 {
-    RenderOptions options;
     Explanation e = {.scene = scene};
-    TRY(args_render_options(args, &options));
-    TRY(render_explain(scene, &options, args->diag, args->arena, &e.plan, &e.books));
+    TRY(args_render_options(args, &e.options));
+    TRY(render_explain(scene, &e.options, args->diag, args->arena, &e.plan, &e.books));
     if (args_has(args, OPT_JSON))
         print_json(&e);
     else

@@ -19,9 +19,14 @@ static const Command commands[] = {
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
-/* The first signal asks the passes to stop; a second one ends the program at once. */
+/* The first signal asks the passes to stop; a second one ends the program at once.  A Ctrl-C that
+ * comes to a loop of many passes lets it finish the one at hand. */
 static void on_interrupt(int signal_number)
 {
+    if (signal_number == SIGINT && work_is_patient && !work_ending) {
+        work_ending = 1;
+        return;
+    }
     work_interrupted = 1;
     signal(signal_number, SIG_DFL);
 }

@@ -65,6 +65,11 @@ static void header_fill(Header *header, const Args *args, const Scene *scene,
     header_add(header, "pms.photons", "caustic %llu, global %llu",
                (unsigned long long)result->stats.count[STAT_PHOTONS_CAUSTIC],
                (unsigned long long)result->stats.count[STAT_PHOTONS_GLOBAL]);
+    if (result->passes)
+        header_add(
+            header, "pms.passes", "%llu; gather radius caustic %.9g to %.9g, global %.9g to %.9g",
+            (unsigned long long)result->passes, result->first_radii.caustic,
+            result->last_radii.caustic, result->first_radii.global, result->last_radii.global);
     header_add(header, "pms.settings",
                "assumed_gamma %g, max_trace_level %d, adc_bailout %g, gather %d %d",
                scene->settings.assumed_gamma, scene->settings.max_trace_level,
@@ -147,20 +152,22 @@ static Status write_exr(const Args *args, const Image *image, const char *path, 
 Status output_write(const Args *args, const Scene *scene, RenderResult *result,
                     const char *const *paths, int path_count)
 {
-    Header *header = ARENA_NEW(args->arena, Header);
+    Header *header = mem_alloc(sizeof *header);
     if (!header)
         return diag_no_memory(args->diag, "the image header");
     header_fill(header, args, scene, result);
-    for (int i = 0; i < path_count; i++) {
+    Status status = OK;
+    for (int i = 0; i < path_count && status == OK; i++) {
         if (kind_of(paths[i]) == FILE_EXR)
-            TRY(write_exr(args, &result->image, paths[i], &header->meta));
+            status = write_exr(args, &result->image, paths[i], &header->meta);
         else
-            TRY(write_png(args, &result->image, paths[i], &header->meta));
+            status = write_png(args, &result->image, paths[i], &header->meta);
     }
-    return OK;
+    mem_free(header);
+    return status;
 }
 
-static Status can_write(const Args *args, const char *path)
+Status output_can_write(const Args *args, const char *path)
 {
     OutFile out;
     TRY(out_begin(args->diag, path, &out));
@@ -189,10 +196,10 @@ Status output_preflight(const Args *args, const char *const *paths, int path_cou
                              "cannot tell the format of '%s': it should end in .exr or .png",
                              paths[i]);
         has_kind[kind] = true;
-        TRY(can_write(args, paths[i]));
+        TRY(output_can_write(args, paths[i]));
     }
     if (stats && strcmp(stats, "-") != 0)
-        TRY(can_write(args, stats));
+        TRY(output_can_write(args, stats));
     if (args_has(args, OPT_LAYERS) && !has_kind[FILE_EXR])
         diag_warn(args->diag, WARN_FILE, SPAN_NONE,
                   "--layers go into EXR files only, and no EXR file is to be written");

@@ -1,6 +1,7 @@
 /* Progress.  SPDX-License-Identifier: Apache-2.0 */
 #include "cli/progress.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 #include <unistd.h>
@@ -33,13 +34,23 @@ static void show_line(const RenderProgress *now, int percent)
         snprintf(left, sizeof left, ", %.0f min left", ceil(now->seconds_left / 60));
     else if (now->seconds_left >= 0)
         snprintf(left, sizeof left, ", %.0f s left", ceil(now->seconds_left));
-    fprintf(stderr, "\r\033[K%s %d %%%s", now->phase, percent, left);
+    char pass[64] = "";
+    if (now->passes)
+        snprintf(pass, sizeof pass, "pass %" PRIu64 " of %" PRIu64 ", ", now->pass, now->passes);
+    else if (now->pass)
+        snprintf(pass, sizeof pass, "pass %" PRIu64 ", ", now->pass);
+    fprintf(stderr, "\r\033[K%s%s %d %%%s", pass, now->phase, percent, left);
     fflush(stderr);
 }
 
 static void show_json(const RenderProgress *now, int percent)
 {
-    fprintf(stderr, "{\"phase\": \"%s\", \"percent\": %d, \"seconds_left\": ", now->phase, percent);
+    fputc('{', stderr);
+    if (now->pass)
+        fprintf(stderr, "\"pass\": %" PRIu64 ", ", now->pass);
+    if (now->passes)
+        fprintf(stderr, "\"passes\": %" PRIu64 ", ", now->passes);
+    fprintf(stderr, "\"phase\": \"%s\", \"percent\": %d, \"seconds_left\": ", now->phase, percent);
     json_number(stderr, now->seconds_left >= 0 ? now->seconds_left : NAN);
     fprintf(stderr, "}\n");
 }
@@ -48,7 +59,8 @@ void progress_show(void *ctx, const RenderProgress *now)
 {
     Progress *progress = ctx;
     double clock = clock_wall();
-    bool is_new_phase = now->phase != progress->last_phase;
+    /* Passes may be many a second. */
+    bool is_new_phase = now->phase != progress->last_phase && now->pass <= 1;
     if (progress->kind == PROGRESS_NONE ||
         (!is_new_phase && clock - progress->last_shown < PROGRESS_INTERVAL))
         return;

@@ -49,28 +49,73 @@ static Status write_stats(const Args *args, const Scene *scene, const RenderResu
     return status;
 }
 
-static Status render_loaded(Args *args, const Scene *scene, double parse_seconds)
-{
-    RenderOptions options;
-    RenderResult result;
+typedef struct Job {
+    const Args *args;
+    const Scene *scene;
+    double parse_seconds;
     Progress progress;
-    TRY(args_render_options(args, &options));
-    TRY(progress_init(&progress, args));
-    options.progress = progress_show;
-    options.progress_ctx = &progress;
-    Status status = render_scene(scene, &options, args->diag, &result);
-    progress_done(&progress);
-    if (status == ERR_INTERRUPTED)
-        return diag_fail(args->diag, status, "interrupted; no picture was written");
-    TRY(status);
+} Job;
+
+/* Write pictures and statistics. */
+static Status write_all(const Job *job, RenderResult *result)
+{
+    const Args *args = job->args;
     double start = clock_wall();
-    result.stats.seconds[PHASE_PARSE] = parse_seconds;
-    status = output_write(args, scene, &result, args->outputs, args->output_count);
-    result.stats.seconds[PHASE_WRITE] = clock_wall() - start;
-    if (status == OK)
-        status = write_stats(args, scene, &result);
+    result->stats.seconds[PHASE_PARSE] = job->parse_seconds;
+    TRY(output_write(args, job->scene, result, args->outputs, args->output_count));
+    result->stats.seconds[PHASE_WRITE] += clock_wall() - start;
+    return write_stats(args, job->scene, result);
+}
+
+/* Write the pictures of the passes so far. */
+static Status show_so_far(void *ctx, RenderResult *so_far)
+{
+    Job *job = ctx;
+    const Args *args = job->args;
+    double start = clock_wall();
+    progress_done(&job->progress);
+    TRY(output_write(args, job->scene, so_far, args->outputs, args->output_count));
+    so_far->stats.seconds[PHASE_WRITE] += clock_wall() - start;
+    return OK;
+}
+
+static Status tell_interrupted(const Job *job, const RenderResult *result)
+{
+    if (result->passes == 0)
+        return diag_fail(job->args->diag, ERR_INTERRUPTED, "interrupted; no picture was written");
+    return diag_fail(job->args->diag, ERR_INTERRUPTED,
+                     "interrupted; the picture is of %llu pass%s, --resume goes on from there",
+                     (unsigned long long)result->passes, result->passes == 1 ? "" : "es");
+}
+
+/* A progressive render that ends early has a picture all the same. */
+static Status render_loaded(Job *job, const RenderOptions *options)
+{
+    RenderResult result;
+    Status status = render_scene(job->scene, options, job->args->diag, &result);
+    progress_done(&job->progress);
+    Status written = OK;
+    if (status == OK || result.image.layer_count > 0)
+        written = write_all(job, &result);
+    if (status == ERR_INTERRUPTED && written == OK)
+        tell_interrupted(job, &result);
     render_result_done(&result);
-    return status;
+    return status != OK ? status : written;
+}
+
+static Status prepare(Job *job, RenderOptions *options)
+{
+    const Args *args = job->args;
+    TRY(args_render_options(args, options));
+    TRY(output_preflight(args, args->outputs, args->output_count));
+    if (options->progressive.state_path)
+        TRY(output_can_write(args, options->progressive.state_path));
+    TRY(progress_init(&job->progress, args));
+    options->progress = progress_show;
+    options->progress_ctx = &job->progress;
+    options->progressive.show = show_so_far;
+    options->progressive.show_ctx = job;
+    return OK;
 }
 
 Status render_cmd(Args *args)
@@ -79,11 +124,13 @@ Status render_cmd(Args *args)
     if (args->output_count == 0)
         TRY(default_outputs(args));
     Scene *scene;
-    double seconds;
-    TRY(args_load_scene(args, 0, &scene, &seconds));
-    Status status = output_preflight(args, args->outputs, args->output_count);
+    RenderOptions options;
+    Job job = {.args = args};
+    TRY(args_load_scene(args, 0, &scene, &job.parse_seconds));
+    job.scene = scene;
+    Status status = prepare(&job, &options);
     if (status == OK)
-        status = render_loaded(args, scene, seconds);
+        status = render_loaded(&job, &options);
     scene_free(scene);
     return status;
 }

@@ -61,11 +61,33 @@ static void print_books(FILE *file, const char *name, const Scene *scene, const 
     fputs("]}", file);
 }
 
+static void print_radii(FILE *file, const char *name, double first, double last)
+{
+    fprintf(file, ", \"%s\": [", name);
+    json_number(file, first);
+    fputs(", ", file);
+    json_number(file, last);
+    fputs("]", file);
+}
+
+/* Passes in all and of this run, gather radii of the first and the last. */
+static void print_passes(FILE *file, const RenderResult *result)
+{
+    if (result->passes == 0)
+        return;
+    fprintf(file, "  \"progressive\": {\"passes\": %" PRIu64 ", \"passes_of_this_run\": %" PRIu64,
+            result->passes, result->new_passes);
+    print_radii(file, "caustic_radius", result->first_radii.caustic, result->last_radii.caustic);
+    print_radii(file, "global_radius", result->first_radii.global, result->last_radii.global);
+    fputs("},\n", file);
+}
+
 void stats_print_json(FILE *file, const Scene *scene, const RenderResult *result)
 {
     fputs("{\n  \"program\": \"pms " PMS_VERSION "\",\n  \"scene\": ", file);
     json_string(file, scene->path);
     fputs(",\n", file);
+    print_passes(file, result);
     print_seconds(file, &result->stats);
     print_counters(file, &result->stats);
     fputs("  \"features\": {", file);

@@ -22,6 +22,9 @@ typedef struct EyeOptions {
     int width, height; /* of the film, pixels */
     bool has_alpha;    /* the background shows in alpha instead of being opaque */
     uint64_t seed;
+    bool is_progressive;   /* one of many passes, whose mean is the picture: what is spread (a
+                              lens) is a single point for each sample */
+    uint32_t first_sample; /* samples of each pixel in the passes before */
     const PhotonMap *caustic, *global; /* NULL: none */
     const PhotonReach *caustic_reach;  /* for caustic_limits */
     GatherLimits caustic_limits, global_limits;
@@ -42,7 +45,8 @@ void eye_thread_free(EyeThread *eye, Stats *add_to);
 
 /* Trace sample `index` through film position (x, y), pixels from the top left corner (a
  * pixel's centre is at +0.5).  The random numbers depend on pixel, index and seed only.  With
- * focal blur one sample is many rays, spread over a pixel's area around (x, y).
+ * focal blur one sample is many rays, spread over a pixel's area around (x, y); in a progressive
+ * pass it is one.
  *
  * Returns false, counts it and makes the sample black when some of it is not a number. */
 bool eye_sample(EyeThread *eye, double x, double y, uint32_t pixel, uint32_t index, EyeSample *out);

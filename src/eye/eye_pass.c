@@ -6,7 +6,7 @@
 #include "math/sample.h"
 
 /* Names the random numbers of this pass. */
-enum { EYE_RNG = 0x657965, PATH_RNG = 0x706174 };
+enum { EYE_RNG = 0x657965, PATH_RNG = 0x706174, LENS_RNG = 0x6c656e };
 
 /* --- a thread's state --------------------------------------------------------------------- */
 
@@ -15,13 +15,16 @@ static EyeLight eye_light(const EyeThread *eye, int index)
     const Plan *plan = eye->plan;
     const Light *light = &eye->scene->lights[index];
     bool has_area = light->area.size1 > 0 && light->area.size2 > 0;
+    /* In one of many passes an empty map is one by chance: the light it stands for must not come
+     * straight instead. */
+    bool has_caustics = eye->options.caustic || eye->options.is_progressive;
     return (EyeLight){
         .light = light,
         .index = index,
         .has_shadow = !light->is_shadowless && plan_has(plan, FEATURE_SHADOWS),
         .is_area = has_area && !light->is_shadowless && plan_has(plan, FEATURE_AREA_LIGHTS),
         .has_highlights = !light->is_shadowless && plan_has(plan, FEATURE_HIGHLIGHTS),
-        .makes_caustics = plan->light_makes_caustics[index] && eye->options.caustic &&
+        .makes_caustics = plan->light_makes_caustics[index] && has_caustics &&
                           light->photon_refraction != TRI_OFF,
     };
 }
@@ -210,6 +213,16 @@ static void blurred_sample(EyeThread *eye, double x, double y, EyeSample *out)
     blur_mean(&blur, out);
 }
 
+/* One ray of focal blur; those of all samples of a pixel cover the lens evenly. */
+static void lens_sample(EyeThread *eye, double x, double y, uint32_t pixel, uint32_t index,
+                        EyeSample *out)
+{
+    Rng of_pixel = rng_at(eye->options.seed, LENS_RNG, pixel);
+    V2 lens = warp_disk(sample_2d(index, rng_u64(&of_pixel)));
+    Ray ray = camera_lens_ray(&eye->camera, x, y, lens);
+    trace_camera_ray(eye, &ray, out);
+}
+
 /* The depth alone may be infinite. */
 static bool sample_is_finite(const EyeSample *s)
 {
@@ -229,7 +242,9 @@ bool eye_sample(EyeThread *eye, double x, double y, uint32_t pixel, uint32_t ind
     eye->path.index = index;
     arena_reset(eye->trace.scratch);
     eye->trace.stats.count[STAT_SAMPLES]++;
-    if (eye->blur_limits) {
+    if (eye->blur_limits && eye->options.is_progressive) {
+        lens_sample(eye, x, y, pixel, index, out);
+    } else if (eye->blur_limits) {
         blurred_sample(eye, x, y, out);
     } else {
         Ray ray = camera_ray(&eye->camera, x, y);

@@ -214,7 +214,7 @@ static double photons_wanted(const Emission *emission, bool is_after_pilot)
     }
     if (wanted <= SPACED_PHOTONS_MAX)
         return ceil(wanted);
-    if (is_after_pilot)
+    if (is_after_pilot && !emission->options->is_repeat)
         diag_warn(
             emission->diag, WARN_RENDER, tracer_scene(emission->tracer)->settings.photons.span,
             "spacing %g asks for %.3g photons: %.0f are sent", spacing, wanted, SPACED_PHOTONS_MAX);

@@ -35,19 +35,22 @@ static void count_paths(const LightBooks *books, int lights, MapKind map, Stats 
     }
 }
 
-static Span map_span(const Tracer *tracer, MapKind map)
+/* Say why there is no map. */
+static void warn_of_none(const Emission *emission, MapKind kind, const char *reason)
 {
-    return tracer_plan(tracer)->rows[map_feature[map]].why;
+    if (!emission->options->is_repeat)
+        diag_warn(emission->diag, WARN_RENDER,
+                  tracer_plan(emission->tracer)->rows[map_feature[kind]].why, "no %s map: %s",
+                  map_name[kind], reason);
 }
 
 /* Send the photons of a map; *map stays NULL, with a warning, when nothing can be stored. */
 static Status emit_and_build(Emission *emission, MapKind kind, Stats *stats, PhotonMap **map)
 {
-    Diag *diag = emission->diag;
-    Span why = map_span(emission->tracer, kind);
     if (emission->budget == 0) {
-        diag_warn(diag, WARN_RENDER, why, "no %s map: no photon of any light reaches %s",
-                  map_name[kind], kind == MAP_CAUSTIC ? "a target" : "a surface");
+        warn_of_none(emission, kind,
+                     kind == MAP_CAUSTIC ? "no photon of any light reaches a target"
+                                         : "no photon of any light reaches a surface");
         return OK;
     }
     PhotonList photons;
@@ -59,11 +62,11 @@ static Status emit_and_build(Emission *emission, MapKind kind, Stats *stats, Pho
     count_paths(emission->books, tracer_scene(emission->tracer)->light_count, kind, stats);
     if (photons.count == 0) {
         mem_free(photons.items);
-        diag_warn(diag, WARN_RENDER, why, "no %s map: no photon was stored", map_name[kind]);
+        warn_of_none(emission, kind, "no photon was stored");
         return OK;
     }
     started = clock_wall();
-    status = photon_map_new(diag, photons.items, photons.count, emission->rules.center,
+    status = photon_map_new(emission->diag, photons.items, photons.count, emission->rules.center,
                             emission->options->threads, map);
     stats->seconds[PHASE_PHOTON_BUILD] += clock_wall() - started;
     return status;
@@ -164,10 +167,10 @@ Status photon_pass(const Tracer *tracer, const PhotonOptions *options, Diag *dia
         status = make_map(tracer, (MapKind)kind, &part, diag, stats,
                           kind == MAP_CAUSTIC ? &out->caustic : &out->global, &out->books);
     }
-    if (status == OK)
-        set_radii(tracer, out);
-    else
+    if (status != OK)
         photon_maps_done(out);
+    else if (!options->has_radii)
+        set_radii(tracer, out);
     return status;
 }
 
@@ -196,6 +199,53 @@ Status photon_plan_budgets(const Tracer *tracer, const PhotonOptions *options, D
     if (status != OK)
         photon_books_done(out);
     return status;
+}
+
+/* Make `mean` that of `before` values like it and one more. */
+static double mean_of(double mean, double value, uint64_t before)
+{
+    return mean + (value - mean) / ((double)before + 1);
+}
+
+static Rgb mean_flux(Rgb mean, Rgb value, uint64_t before)
+{
+    return rgb_mad(mean, 1 / ((float)before + 1), rgb_sub(value, mean));
+}
+
+static void add_book(LightBooks *to, const LightBooks *from, uint64_t before)
+{
+    to->power = mean_of(to->power, from->power, before);
+    to->share = mean_of(to->share, from->share, before);
+    to->budget += from->budget;
+    to->emitted += from->emitted;
+    to->stored_paths += from->stored_paths;
+    to->absorbed += from->absorbed;
+    to->escaped += from->escaped;
+    to->cut += from->cut;
+    to->stored += from->stored;
+    to->flux_emitted = mean_flux(to->flux_emitted, from->flux_emitted, before);
+    to->flux_stored = mean_flux(to->flux_stored, from->flux_stored, before);
+    to->flux_absorbed = mean_flux(to->flux_absorbed, from->flux_absorbed, before);
+    to->flux_escaped = mean_flux(to->flux_escaped, from->flux_escaped, before);
+    to->flux_cut = mean_flux(to->flux_cut, from->flux_cut, before);
+}
+
+static void add_map_books(LightBooks **to, LightBooks **from, int lights, uint64_t before)
+{
+    if (!*to) {
+        *to = *from;
+        *from = NULL;
+        return;
+    }
+    for (int i = 0; *from && i < lights; i++)
+        add_book(&(*to)[i], &(*from)[i], before);
+}
+
+void photon_books_add(PhotonBooks *to, PhotonBooks *from, uint64_t before)
+{
+    to->light_count = from->light_count;
+    add_map_books(&to->caustic, &from->caustic, from->light_count, before);
+    add_map_books(&to->global, &from->global, from->light_count, before);
 }
 
 void photon_books_done(PhotonBooks *books)

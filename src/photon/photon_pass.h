@@ -39,6 +39,8 @@ typedef struct PhotonMaps {
 typedef struct PhotonOptions {
     uint64_t seed;
     int threads;
+    bool is_repeat; /* what there is to warn of was said in a pass before */
+    bool has_radii; /* the caller knows the gather radii: they are left 0 */
     void (*progress)(void *ctx, double fraction);
     void *progress_ctx;
 } PhotonOptions;
@@ -52,6 +54,10 @@ void photon_budget(const double *weights, int count, uint64_t total, uint64_t *s
 Status photon_plan_budgets(const Tracer *tracer, const PhotonOptions *options, Diag *diag,
                            PhotonBooks *out);
 void photon_books_done(PhotonBooks *books);
+
+/* Add the books of a pass to those of `before` passes of the same scene: photons add up; power,
+ * share and flux become means.  `from` may be emptied; photon_books_done it all the same. */
+void photon_books_add(PhotonBooks *to, PhotonBooks *from, uint64_t before);
 
 /* Run the pass the plan calls for.  Warns and goes on without a map when nothing could be
  * stored.  Counters are added to *stats.  Free with photon_maps_done. */

@@ -198,6 +198,13 @@ static bool row_below(PlanRow *row, int quality, int needed)
     return true;
 }
 
+static void plan_passes(const PlanOptions *options, PlanRow *row)
+{
+    row_set(row, options->is_progressive, SPAN_NONE, "%s",
+            options->is_progressive ? "asked for on the command line"
+                                    : "not asked for (--progressive)");
+}
+
 static void plan_paths(const PlanOptions *options, const Evidence *found, Plan *plan)
 {
     PlanRow *row = &plan->rows[FEATURE_PATHS], *caustics = &plan->rows[FEATURE_PATH_CAUSTICS];
@@ -373,6 +380,7 @@ Status plan_make(const Scene *scene, const PlanOptions *options, Arena *arena, P
     for (int i = 0; i < scene->light_count; i++)
         look_at_light(scene, options, &scene->lights[i], &out->light_makes_caustics[i], &found);
 
+    plan_passes(options, &out->rows[FEATURE_PROGRESSIVE]);
     plan_paths(options, &found, out);
     bool has_paths = plan_has(out, FEATURE_PATHS);
     plan_caustics(scene, options, &found, has_paths, &out->rows[FEATURE_CAUSTIC_MAP]);

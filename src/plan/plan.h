@@ -27,6 +27,7 @@ typedef enum Integrator { INTEGRATOR_PHOTONS, INTEGRATOR_PATH } Integrator;
 typedef struct PlanOptions {
     Integrator integrator;  /* --integrator */
     double light_radius;    /* --light-radius, scene units: see Plan */
+    bool is_progressive;    /* --progressive */
     bool has_indirect;      /* --gi */
     bool has_no_photons;    /* --no-photons */
     int quality;            /* POV's +Q, 0 to 9 */

@@ -149,11 +149,14 @@ static void uniform_pixel(const Aa *aa, int x, int y, int samples, bool is_cente
     Sum sum;
     sum_start(aa, &sum);
     for (int i = 0; i < samples; i++) {
-        V2 place = is_centered ? (V2){0.5, 0.5} : sample_2d((uint32_t)i, key);
-        if (sampler(ctx, x + place.u, y + place.v, pixel, (uint32_t)i, out))
+        uint32_t index = aa->first + (uint32_t)i;
+        V2 place = is_centered ? (V2){0.5, 0.5} : sample_2d(index, key);
+        if (sampler(ctx, x + place.u, y + place.v, pixel, index, out))
             sum_add(aa, &sum, out);
     }
     sum_mean(aa, &sum, out);
+    for (int i = 0; sum.count == 0 && aa->has_gaps && i < aa->channels; i++)
+        out[i] = NAN;
 }
 
 void aa_uniform(const Aa *aa, FilmRect rect, int samples, bool is_centered, AaSampler sampler,

@@ -20,6 +20,8 @@ typedef struct Aa {
     double jitter; /* amount, 0: none */
     float power;   /* colours are compared as c^power */
     uint64_t seed;
+    uint32_t first; /* samples of a pixel taken before, of uniform ones */
+    bool has_gaps;  /* a pixel without a usable sample is NaN instead of black */
 } Aa;
 
 void aa_init(Aa *aa, const Film *film, const RenderOptions *options, const SceneSettings *settings);

@@ -20,6 +20,14 @@ static const LayerKind LAYER_KINDS[] = {
 };
 enum { LAYER_KIND_COUNT = sizeof LAYER_KINDS / sizeof LAYER_KINDS[0] };
 
+const char *film_layer_name(LayerBit layer)
+{
+    for (int i = 0; i < LAYER_KIND_COUNT; i++)
+        if (LAYER_KINDS[i].bit == layer)
+            return LAYER_KINDS[i].name;
+    return "";
+}
+
 Status film_init(Film *film, const RenderOptions *options, Diag *diag)
 {
     *film = (Film){.width = options->width,

@@ -29,6 +29,9 @@ typedef struct FilmRect {
     int x1, y1, x2, y2;
 } FilmRect;
 
+/* Return the name of a layer. */
+const char *film_layer_name(LayerBit layer);
+
 /* Make an image with the layers asked for.  Free with film_done. */
 Status film_init(Film *film, const RenderOptions *options, Diag *diag);
 void film_done(Film *film);

@@ -7,6 +7,10 @@
  * on another one: walls of a corner do not light each other. */
 #define GATHER_NORMAL_COSINE 0.5
 
+/* Photons within the gather radius of the first of many passes, where the map is of common
+ * density (photon_map_radius).  Fewer than in a single pass: their noise is averaged away. */
+enum { SERIES_PHOTONS = 20 };
+
 typedef struct Pass {
     const Tracer *tracer;
     const PassOptions *options;
@@ -14,6 +18,7 @@ typedef struct Pass {
     Stats *stats;
     PhotonMaps maps;
     PhotonReach caustic_reach;
+    GatherLimits caustic_limits, global_limits;
 } Pass;
 
 /* --- photons -------------------------------------------------------------------------------- */
@@ -21,7 +26,8 @@ typedef struct Pass {
 static void photon_progress(void *ctx, double fraction)
 {
     const RenderOptions *options = ctx;
-    RenderProgress progress = {"photons", fraction < 1 ? fraction : 1 - 0x1p-20, -1};
+    RenderProgress progress = {
+        .phase = "photons", .fraction = fraction < 1 ? fraction : 1 - 0x1p-20, .seconds_left = -1};
     options->progress(options->progress_ctx, &progress);
 }
 
@@ -51,16 +57,49 @@ static GatherLimits gather_limits(const Pass *pass, double radius, double far_ra
                           .normal_cosine = GATHER_NORMAL_COSINE};
 }
 
+/* The same for one pass of many: everything within the radius of the pass.
+ *
+ * asked  radius of the first pass that the scene asks for; 0: from the density of the photons. */
+static GatherLimits series_limits(const Pass *pass, const PhotonMap *map, double asked,
+                                  double *first)
+{
+    if (*first == 0 && map)
+        *first = asked > 0 ? asked : photon_map_radius(map, SERIES_PHOTONS);
+    GatherLimits limits = gather_limits(pass, *first * pass->options->series->shrink, 0);
+    limits.min_photons = limits.max_photons = 0;
+    return limits;
+}
+
+static void set_limits(Pass *pass)
+{
+    const PhotonMaps *maps = &pass->maps;
+    const PassSeries *series = pass->options->series;
+    if (series) {
+        double asked = tracer_scene(pass->tracer)->settings.photons.radius;
+        PassRadii *first = series->first;
+        pass->caustic_limits = series_limits(pass, maps->caustic, asked, &first->caustic);
+        pass->global_limits = series_limits(pass, maps->global, 0, &first->global);
+    } else {
+        pass->caustic_limits = gather_limits(pass, maps->caustic_radius, maps->caustic_far);
+        pass->global_limits = gather_limits(pass, maps->global_radius, maps->global_far);
+    }
+}
+
 static Status make_maps(Pass *pass)
 {
     if (!pass_needs_photons(tracer_plan(pass->tracer)))
         return OK;
+    const PassSeries *series = pass->options->series;
     PhotonOptions options = pass_photon_options(pass->options->render, pass->options->photon_seed);
+    options.has_radii = series != NULL;
+    options.is_repeat = series && series->is_repeat;
     TRY(photon_pass(pass->tracer, &options, pass->diag, pass->stats, &pass->maps));
+    set_limits(pass);
     if (!pass->maps.caustic)
         return OK;
-    bool is_widening = tracer_scene(pass->tracer)->settings.photons.gather_min > 0;
-    double radius = is_widening ? pass->maps.caustic_far : pass->maps.caustic_radius;
+    const GatherLimits *limits = &pass->caustic_limits;
+    double far = limits->min_photons > 0 ? limits->far_radius : 0;
+    double radius = fmax(limits->max_radius, far);
     return photon_reach_init(&pass->caustic_reach, pass->maps.caustic, radius, pass->diag);
 }
 
@@ -69,16 +108,18 @@ static Status make_maps(Pass *pass)
 static Status fill_film(Pass *pass, Film *film)
 {
     const RenderOptions *options = pass->options->render;
-    EyeOptions eye = {
-        .width = options->width,
-        .height = options->height,
-        .has_alpha = options->has_alpha,
-        .seed = options->seed,
-        .caustic = pass->maps.caustic,
-        .global = pass->maps.global,
-        .caustic_reach = &pass->caustic_reach,
-        .caustic_limits = gather_limits(pass, pass->maps.caustic_radius, pass->maps.caustic_far),
-        .global_limits = gather_limits(pass, pass->maps.global_radius, pass->maps.global_far)};
+    const PassSeries *series = pass->options->series;
+    EyeOptions eye = {.width = options->width,
+                      .height = options->height,
+                      .has_alpha = options->has_alpha,
+                      .seed = options->seed,
+                      .is_progressive = series != NULL,
+                      .first_sample = series ? series->first_sample : 0,
+                      .caustic = pass->maps.caustic,
+                      .global = pass->maps.global,
+                      .caustic_reach = &pass->caustic_reach,
+                      .caustic_limits = pass->caustic_limits,
+                      .global_limits = pass->global_limits};
     return tiles_render(pass->tracer, options, &eye, pass->diag, pass->stats, film);
 }
 

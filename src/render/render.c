@@ -3,6 +3,7 @@
 
 #include "base/work.h"
 #include "render/pass.h"
+#include "render/progressive.h"
 
 static Status make_tracer(const Scene *scene, const RenderOptions *options, Diag *diag,
                           RenderResult *out, Tracer **tracer)
@@ -15,7 +16,7 @@ static Status make_tracer(const Scene *scene, const RenderOptions *options, Diag
 
 static void report_end(const RenderOptions *options)
 {
-    RenderProgress progress = {"eye", 1, 0};
+    RenderProgress progress = {.phase = "eye", .fraction = 1};
     if (options->progress)
         options->progress(options->progress_ctx, &progress);
 }
@@ -72,13 +73,16 @@ static void warn_of_missing(const Plan *plan, Diag *diag)
 Status render_scene(const Scene *scene, const RenderOptions *options, Diag *diag, RenderResult *out)
 {
     Tracer *tracer = NULL;
+    double started = clock_wall();
     *out = (RenderResult){0};
     TRY(check_options(options, diag));
     if (plan_make(scene, &options->plan, scene->arena, &out->plan) != OK)
         return diag_no_memory(diag, "the plan");
     warn_of_missing(&out->plan, diag);
     Status status = make_tracer(scene, options, diag, out, &tracer);
-    if (status == OK)
+    if (status == OK && options->plan.is_progressive)
+        status = progressive_render(tracer, options, started, diag, out);
+    else if (status == OK)
         status = render_once(tracer, options, diag, out);
     tracer_free(tracer);
     return status;

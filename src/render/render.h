@@ -18,8 +18,29 @@ typedef enum LayerBit {
 typedef struct RenderProgress {
     const char *phase;
     double fraction;     /* of the phase, 0 to 1, never 1 before it is done */
-    double seconds_left; /* estimate for the phase; negative: unknown */
+    double seconds_left; /* estimate for the phase, or all passes; negative: unknown */
+    uint64_t pass;       /* of a progressive render, from 1; else 0 */
+    uint64_t passes;     /* to be made in all; 0: unknown */
 } RenderProgress;
+
+/* Gather radii, scene units; 0: there was no map. */
+typedef struct PassRadii {
+    double caustic, global;
+} PassRadii;
+
+typedef struct RenderResult RenderResult;
+
+/* plan.is_progressive: many passes of fresh photons and samples, whose mean is the picture.  The gather radius shrinks
+ * from pass to pass such that noise and blur both go to zero, in the memory of one pass. */
+typedef struct ProgressiveOptions {
+    uint64_t passes;        /* in all, with those of runs before; 0: no limit */
+    double seconds;         /* no pass is begun that would end later; 0: no limit */
+    const char *state_path; /* where the sums of passes are kept; NULL: nowhere */
+    bool is_resumed;        /* go on from the state kept there, if there is one */
+    /* Called with the picture so far now and then; it may fail now and succeed later. */
+    Status (*show)(void *ctx, RenderResult *so_far);
+    void *show_ctx;
+} ProgressiveOptions;
 
 typedef struct RenderOptions {
     int width, height;
@@ -34,6 +55,7 @@ typedef struct RenderOptions {
     unsigned layers;         /* LayerBits */
     bool has_alpha;          /* background transparent (+UA) */
     PlanOptions plan;
+    ProgressiveOptions progressive;
     void (*progress)(void *ctx, const RenderProgress *progress);
     void *progress_ctx;
 } RenderOptions;
@@ -43,15 +65,19 @@ typedef struct RenderOptions {
                      .aa_depth = 3, .aa_has_jitter = true, .aa_jitter = 1,                         \
                      .plan = PLAN_OPTIONS_DEFAULT})
 
-typedef struct RenderResult {
+struct RenderResult {
     Image image;      /* beauty RGBA first, then the layers asked for */
+    uint64_t passes, new_passes; /* of a progressive render: in all, and of this run; else 0 */
+    PassRadii first_radii, last_radii;
     Stats stats;
     PhotonBooks books;
     Plan plan;        /* its memory is the scene's arena */
-    uint64_t caustic_hash, global_hash; /* of the photon maps' bytes, 0: no map */
-} RenderResult;
+    uint64_t caustic_hash, global_hash; /* of the photon maps' bytes (of the last pass),
+                                           0: no map */
+};
 
-/* Render.  ERR_INTERRUPTED leaves no image.  Free the result with render_result_done. */
+/* Render.  ERR_INTERRUPTED leaves no image, but of a progressive render that of the passes done,
+ * if there is any.  Free the result with render_result_done. */
 Status render_scene(const Scene *scene, const RenderOptions *options, Diag *diag,
                     RenderResult *out);
 void render_result_done(RenderResult *result);

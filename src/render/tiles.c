@@ -103,7 +103,9 @@ static void report(EyePass *pass, size_t done, size_t count)
     if (fraction >= 1)
         fraction = 1 - 0x1p-20; /* the end is reported when it is reached */
     double spent = clock_wall() - pass->started;
-    RenderProgress progress = {"eye", fraction, fraction > 0 ? spent / fraction - spent : -1};
+    RenderProgress progress = {.phase = "eye",
+                               .fraction = fraction,
+                               .seconds_left = fraction > 0 ? spent / fraction - spent : -1};
     pass->options->progress(pass->options->progress_ctx, &progress);
 }
 
@@ -202,11 +204,14 @@ static void pass_done(EyePass *pass, Stats *stats)
     mem_free(pass->left);
 }
 
-/* With focal blur a sample is many rays already, spread over its pixel. */
-static void plan_samples(EyePass *pass, const Tracer *tracer)
+/* With focal blur a sample is many rays already, spread over its pixel, but in one of many passes
+ * a single one. */
+static void plan_samples(EyePass *pass, const Tracer *tracer, const EyeOptions *eye)
 {
     int samples = pass->options->samples > 1 ? pass->options->samples : 1;
-    if (plan_has(tracer_plan(tracer), FEATURE_FOCAL_BLUR)) {
+    pass->aa.first = eye->first_sample;
+    pass->aa.has_gaps = eye->is_progressive;
+    if (plan_has(tracer_plan(tracer), FEATURE_FOCAL_BLUR) && !eye->is_progressive) {
         int rays = tracer_scene(tracer)->camera.blur_samples;
         samples = (samples + rays - 1) / rays;
         pass->is_spread_by_blur = true;
@@ -222,7 +227,7 @@ Status tiles_render(const Tracer *tracer, const RenderOptions *options, const Ey
                     .sweeps = options->aa == AA_POV1 ? 2 : 1,
                     .started = clock_wall()};
     aa_init(&pass.aa, film, options, &tracer_scene(tracer)->settings);
-    plan_samples(&pass, tracer);
+    plan_samples(&pass, tracer, eye);
     Status status = make_seats(&pass, tracer, eye, diag);
     if (status == OK)
         status = run_sweeps(&pass, diag);

@@ -157,6 +157,8 @@ typedef struct Scene {
     Arena *arena;       /* all that is reached from here */
     Arena *text;        /* sources that spans point into */
     const char *path;
+    uint64_t text_hash;    /* of every file that was read, and of `now` if it is used */
+    uint64_t declare_hash; /* of what the command line declared */
     Object *objects;
     uint32_t object_count;
     Surface *surfaces;

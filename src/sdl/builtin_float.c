@@ -1,6 +1,8 @@
 /* Built-in functions and constants that yield numbers.  SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/parser_int.h"
 
+#include "base/hash.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <time.h>
@@ -75,6 +77,7 @@ static bool constant(Parser *p, TokenKind word, Terms *out)
         return true;
     case KW_NOW:
         out->n[0] = days_now();
+        p->scene->text_hash = hash_bytes(p->scene->text_hash, out->n, sizeof out->n[0]);
         return true;
     case KW_VERSION:
         out->n[0] = p->version;

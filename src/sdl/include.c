@@ -5,6 +5,7 @@
 #include "sdl/parser_int.h"
 
 #include "base/file.h"
+#include "base/hash.h"
 
 #include <dirent.h>
 #include <stdio.h>
@@ -176,6 +177,8 @@ static TokenFile *file_load(Parser *p, const char *path)
 TokenFile *file_lex(Parser *p, const Source *source)
 {
     TokenFile *file = parse_no_null(p, ARENA_NEW(p->arena, TokenFile));
+    uint64_t hash = hash_bytes(p->scene->text_hash, &source->size, sizeof source->size);
+    p->scene->text_hash = hash_bytes(hash, source->text, source->size);
     Status status = lex_source(p->diag, source, &p->names, p->arena, file);
     if (status != OK)
         parse_fail_status(p, status);

@@ -5,6 +5,7 @@
 #include "sdl/parser_int.h"
 
 #include "base/file.h"
+#include "base/hash.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -42,6 +43,9 @@ static void set_declares(Parser *p)
         const SdlDeclare *declare = &p->options->declares[i];
         const char *value = declare->value;
         size_t length = strlen(value);
+        uint64_t *hash = &p->scene->declare_hash;
+        *hash = hash_bytes(*hash, declare->name, strlen(declare->name) + 1);
+        *hash = hash_bytes(*hash, value, length + 1);
         char *end;
         double number = strtod(value, &end);
         if (value[0] == '"')

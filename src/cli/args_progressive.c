@@ -1,0 +1,68 @@
+/* The options of progressive rendering.  SPDX-License-Identifier: Apache-2.0 */
+#include "cli/args_int.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SECONDS_MAX 1e9
+
+/* The file beside the first picture that the state is kept in. */
+#define STATE_ENDING ".pmsstate"
+
+/* Read a time: a number and s, m, h or d; seconds without a letter. */
+static Status read_time(const Args *args, double *seconds)
+{
+    static const char letters[] = "smhd";
+    static const double units[] = {1, 60, 3600, 86400};
+    const char *text = args->value[OPT_TIME];
+    if (!text)
+        return OK;
+    char *end;
+    double number = strtod(text, &end);
+    const char *letter = *end ? strchr(letters, *end) : letters;
+    bool is_time = end != text && letter && (!*end || !end[1]);
+    *seconds = is_time ? number * units[letter - letters] : 0;
+    if (!is_time || !(*seconds > 0 && *seconds <= SECONDS_MAX))
+        return diag_fail(args->diag, ERR_USAGE,
+                         "--time wants a time such as 90, 90s, 5m, 1.5h or 2d, got '%s'", text);
+    return OK;
+}
+
+static Status state_path(const Args *args, const char **out)
+{
+    if (args->output_count == 0)
+        return OK;
+    size_t length = strlen(args->outputs[0]);
+    char *path = arena_alloc(args->arena, length + sizeof STATE_ENDING);
+    if (!path)
+        return diag_no_memory(args->diag, "the command line");
+    memcpy(path, args->outputs[0], length);
+    memcpy(path + length, STATE_ENDING, sizeof STATE_ENDING);
+    *out = path;
+    return OK;
+}
+
+Status args_progressive(const Args *args, RenderOptions *out)
+{
+    static const OptionId needing[] = {OPT_PASSES, OPT_TIME, OPT_RESUME};
+    static const char *const names[] = {"passes", "time", "resume"};
+    ProgressiveOptions *progressive = &out->progressive;
+    long passes;
+    out->plan.is_progressive = args_has(args, OPT_PROGRESSIVE);
+    for (int i = 0; i < 3 && !out->plan.is_progressive; i++)
+        if (args_has(args, needing[i]))
+            return diag_fail(args->diag, ERR_USAGE, "--%s wants --progressive beside it", names[i]);
+    if (!out->plan.is_progressive)
+        return OK;
+    if (args->has_pov_aa)
+        return diag_fail(
+            args->diag, ERR_USAGE,
+            "+A has no meaning with --progressive, whose passes each take --aa samples "
+            "of a pixel");
+    TRY(args_int(args, OPT_PASSES, 1, UINT32_MAX, 0, &passes));
+    TRY(read_time(args, &progressive->seconds));
+    progressive->passes = (uint64_t)passes;
+    progressive->is_resumed = args_has(args, OPT_RESUME);
+    return state_path(args, &progressive->state_path);
+}
