@@ -1,6 +1,6 @@
 /* Light that reaches a surface: from the light sources, and from the photon maps.
  * SPDX-License-Identifier: Apache-2.0 */
-#include "eye/eye_int.h"
+#include "eye/air_int.h"
 
 Rgb layers_direct(const SurfaceSample *s, V3 to_light, bool has_highlights)
 {
@@ -58,6 +58,9 @@ static Rgb light_from(EyeThread *eye, const EyeLight *light, const SurfaceSample
     }
     if (rgb_is_black(sent))
         return RGB_BLACK;
+    if (eye->has_air)
+        sent = rgb_mul(sent, media_air_shadow(&eye->trace, s->at.p, sample.to_light,
+                                              sample.distance, light->index));
     return rgb_mul(sent, light_shadow(eye, light, s, &sample));
 }
 

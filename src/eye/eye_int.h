@@ -11,6 +11,8 @@ typedef struct EyeLight {
     int index; /* among the scene's lights */
     bool has_shadow, is_area, has_highlights;
     bool makes_caustics; /* the caustic map brings what targets refract of it */
+    bool lights_media;   /* media scatter its light */
+    bool makes_volume;   /* the volume map brings what targets refract of it */
 } EyeLight;
 
 /* Radiance along a ray, by where the light comes from. */
@@ -33,6 +35,7 @@ struct EyeThread {
     GatherScratch *gather;
     EyeLight *lights;
     int light_count;
+    bool has_air; /* media, fog or rainbows */
     CameraRays camera;
     bool has_eye_point;         /* all camera rays start at one point */
     Interiors camera_interiors; /* around that point */

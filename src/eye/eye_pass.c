@@ -6,7 +6,7 @@
 #include "math/sample.h"
 
 /* Names the random numbers of this pass. */
-enum { EYE_RNG = 0x657965, PATH_RNG = 0x706174, LENS_RNG = 0x6c656e };
+enum { EYE_RNG = 0x657965, PATH_RNG = 0x706174, LENS_RNG = 0x6c656e, MEDIA_RNG = 0x6d6564 };
 
 /* --- a thread's state --------------------------------------------------------------------- */
 
@@ -26,6 +26,7 @@ static EyeLight eye_light(const EyeThread *eye, int index)
         .has_highlights = !light->is_shadowless && plan_has(plan, FEATURE_HIGHLIGHTS),
         .makes_caustics = plan->light_makes_caustics[index] && has_caustics &&
                           light->photon_refraction != TRI_OFF,
+        .lights_media = light->lights_media && !light->is_shadowless,
     };
 }
 
@@ -77,6 +78,7 @@ Status eye_thread_new(const Tracer *tracer, const EyeOptions *options, Diag *dia
     }
     eye->scene = tracer_scene(tracer);
     eye->plan = tracer_plan(tracer);
+    eye->has_air = plan_has_air(eye->plan);
     eye->options = *options;
     eye->gather = gather_scratch_new();
     if (!eye->gather)
@@ -240,6 +242,7 @@ bool eye_sample(EyeThread *eye, double x, double y, uint32_t pixel, uint32_t ind
     eye->path.choice = rng_u64(&of_pixel);
     eye->path.bounce = rng_u64(&of_pixel);
     eye->path.index = index;
+    eye->trace.media_rng = rng_at(eye->options.seed, MEDIA_RNG, (uint64_t)pixel << 32 | index);
     arena_reset(eye->trace.scratch);
     eye->trace.stats.count[STAT_SAMPLES]++;
     if (eye->blur_limits && eye->options.is_progressive) {

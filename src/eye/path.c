@@ -13,7 +13,7 @@
  * squeezed by the square of their ior, except between the eye and the first diffuse surface,
  * where the language does not: so the light on a surface under water is what photons bring.
  * SPDX-License-Identifier: Apache-2.0 */
-#include "eye/eye_int.h"
+#include "eye/air_int.h"
 
 #include "base/work.h"
 #include "math/sample.h"
@@ -68,7 +68,7 @@ static void weigh(Path *path, Rgb factor)
 }
 
 /* Add the lights met before t that no shadow ray has brought. */
-static void add_met_lights(const EyeThread *eye, const Path *path, double t, Radiance *out)
+static void add_met_lights(EyeThread *eye, const Path *path, double t, Radiance *out)
 {
     if (path->diffuse == 0 || !path->is_shadowed)
         return;
@@ -81,6 +81,8 @@ static void add_met_lights(const EyeThread *eye, const Path *path, double t, Rad
             continue;
         Rgb weight = is_caustic ? path->shine : path->weight;
         weight = rgb_mul(weight, leg_fade(path, met.t));
+        if (eye->has_air)
+            weight = rgb_mul(weight, air_clear(eye, &path->ray, met.t, &path->inside));
         add_part(out, is_caustic ? PART_CAUSTIC : PART_INDIRECT, weight, met.radiance);
     }
 }
@@ -88,6 +90,17 @@ static void add_met_lights(const EyeThread *eye, const Path *path, double t, Rad
 static LightPart part_of(const Path *path)
 {
     return path->diffuse == 0 ? PART_DIRECT : PART_INDIRECT;
+}
+
+/* What lies before what the path meets at `length`.  Light is scattered once: what media scatter
+ * more than once is not in the picture. */
+static void add_air(EyeThread *eye, Path *path, double length, Radiance *out)
+{
+    Veil veil;
+    air_along(eye, &path->ray, length, &path->inside, path->diffuse > 0, &veil);
+    add_part(out, part_of(path), path->weight, veil.light[PART_DIRECT]);
+    weigh(path, veil.through);
+    path->transmit *= rgb_grey(veil.through);
 }
 
 static void add_sky(const EyeThread *eye, const Path *path, Radiance *out)
@@ -305,6 +318,8 @@ void path_radiance(EyeThread *eye, const Ray *ray, const Interiors *interiors, R
         SurfaceSample s;
         bool is_hit = trace_closest(&eye->trace, &path.ray, path.kind, &hit);
         add_met_lights(eye, &path, is_hit ? hit.t : INFINITY, out);
+        if (eye->has_air)
+            add_air(eye, &path, is_hit ? hit.t : INFINITY, out);
         if (!is_hit) {
             add_sky(eye, &path, out);
             break;

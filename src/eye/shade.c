@@ -3,7 +3,7 @@
  * The ray that goes on through a surface is followed in a loop, since what it brings back is
  * only multiplied by what it passed; reflections recurse, since a reflection exponent bends
  * their sum.  SPDX-License-Identifier: Apache-2.0 */
-#include "eye/eye_int.h"
+#include "eye/air_int.h"
 
 #include "base/work.h"
 
@@ -168,6 +168,18 @@ static void add_surface(EyeThread *eye, const Path *path, const SurfaceSample *s
         add_reflections(eye, path, s, out);
 }
 
+/* What the path sees through from here on lies behind the air along its ray. */
+static void add_air(EyeThread *eye, Path *path, double length, Radiance *out)
+{
+    Veil veil;
+    air_along(eye, &path->ray, length, &path->inside, false, &veil);
+    for (int i = 0; i < PART_COUNT; i++)
+        add_part(out, (LightPart)i, path->through, veil.light[i]);
+    path->through = rgb_mul(path->through, veil.through);
+    path->transmit *= rgb_grey(veil.through);
+    path->weight *= rgb_max(veil.through);
+}
+
 /* Follow one path; the caller has made sure that it may be traced. */
 static void radiance(EyeThread *eye, Path *path, Radiance *out, EyeSample *first)
 {
@@ -175,13 +187,18 @@ static void radiance(EyeThread *eye, Path *path, Radiance *out, EyeSample *first
     *out = (Radiance){.transmit = 0};
     for (int surfaces = 0; surfaces < PATH_SURFACES_MAX; surfaces++) {
         Hit hit;
-        if (!trace_closest(&eye->trace, &path->ray, path->kind, &hit)) {
+        bool is_met = trace_closest(&eye->trace, &path->ray, path->kind, &hit);
+        if (eye->has_air)
+            add_air(eye, path, is_met ? hit.t : INFINITY, out);
+        if (!is_met) {
             float behind;
             Rgb sky = sky_light(eye, path->ray.d, path->is_mirrored, &behind);
             add_part(out, PART_DIRECT, path->through, sky);
             out->transmit = path->transmit * behind;
             return;
         }
+        if (rgb_is_black(path->through))
+            return; /* nothing shows through the air */
         if (!path->is_straight)
             path->level++;
         surface_sample(&eye->trace, &path->ray, &hit, &path->inside, &s);

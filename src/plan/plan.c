@@ -3,7 +3,7 @@
  * One pass over the surfaces and lights finds the first of each kind that calls for an effect;
  * then each row is filled by a function of its own, from that evidence and the options.
  * SPDX-License-Identifier: Apache-2.0 */
-#include "plan/plan.h"
+#include "plan/plan_int.h"
 
 #include "math/eps.h"
 
@@ -388,6 +388,7 @@ Status plan_make(const Scene *scene, const PlanOptions *options, Arena *arena, P
     plan_lights(options, &found, out);
     plan_surfaces(options, &found, out->rows);
     plan_camera_and_sky(scene, out->rows);
+    plan_media(scene, options->quality, out->rows);
 
     out->is_unlit = options->quality < QUALITY_LIGHTS;
     out->has_ambient = !plan_has(out, FEATURE_GLOBAL_MAP) && !has_paths;

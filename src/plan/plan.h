@@ -65,6 +65,13 @@ static inline bool plan_filters_shadow(const Plan *plan, const Surface *surface)
     return surface->may_transmit && (surface->is_filter || !plan_has(plan, FEATURE_PATHS));
 }
 
+/* Return true if what fills space is seen: media, fog or rainbows. */
+static inline bool plan_has_air(const Plan *plan)
+{
+    return plan_has(plan, FEATURE_MEDIA) || plan_has(plan, FEATURE_FOG) ||
+           plan_has(plan, FEATURE_RAINBOW);
+}
+
 /* Return true if photons from `light` are to be reflected (refracted) by a surface: the object or
  * the light asks for it and neither forbids it. */
 bool plan_photons_reflect(const Light *light, const Surface *surface);

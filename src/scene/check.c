@@ -184,6 +184,45 @@ static void check_content(const Scene *scene, Diag *diag)
         diag_warn(diag, WARN_RENDER, SPAN_NONE, "there is no object in the scene");
 }
 
+/* --- media
+ * ----------------------------------------------------------------------------------------- */
+
+static void check_media(const Scene *scene, Diag *diag)
+{
+    for (uint32_t i = 0; i < scene->surface_count; i++) {
+        const Surface *s = &scene->surfaces[i];
+        if (s->interior->media_count > 0 && !s->is_hollow)
+            diag_warn(diag, WARN_RENDER, s->interior->media[0]->span,
+                      "media are seen in hollow objects only, and this object is not");
+    }
+}
+
+static bool has_atmosphere(const Scene *scene)
+{
+    const Atmosphere *air = &scene->atmosphere;
+    return air->media_count > 0 || air->fog_count > 0 || air->rainbow_count > 0;
+}
+
+/* The first surface of a shape, which lends its interior to all that is not said otherwise. */
+static const Surface *first_surface(const Scene *scene, const Shape *shape)
+{
+    while (shape->child_count > 0)
+        shape = shape->children[0];
+    return &scene->surfaces[shape->surface];
+}
+
+static void check_air(const Scene *scene, Diag *diag)
+{
+    for (uint32_t i = 0; has_atmosphere(scene) && i < scene->object_count; i++) {
+        const Object *o = &scene->objects[i];
+        if (shape_is_solid(o->shape) && !first_surface(scene, o->shape)->is_hollow &&
+            shape_is_inside(o->shape, scene->camera.location))
+            diag_warn(diag, WARN_RENDER, o->span,
+                      "the camera is inside this object, which is not hollow: no fog, rainbow or "
+                      "media of the atmosphere there");
+    }
+}
+
 Status scene_check(Scene *scene, Diag *diag)
 {
     for (uint32_t i = 0; i < scene->surface_count; i++) {
@@ -200,5 +239,8 @@ Status scene_check(Scene *scene, Diag *diag)
     for (int i = 0; i < scene->light_count; i++)
         is_good &= check_light(&scene->lights[i], diag);
     check_content(scene, diag);
+    check_media(scene, diag);
+    if (is_good)
+        check_air(scene, diag);
     return is_good ? OK : ERR_SCENE;
 }

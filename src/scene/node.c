@@ -5,11 +5,14 @@
  * the written order has to be remembered.  SPDX-License-Identifier: Apache-2.0 */
 #include "scene/node.h"
 
-/* Many children share one texture: the last answer saves making a copy for each. */
+#include "texture/media.h"
+
+/* Many children share one texture or interior: the last answer saves making a copy for each. */
 typedef struct Move {
     Arena *arena;
     const Xform *xform;
     const Texture *from, *to;
+    const Interior *inside_from, *inside_to;
 } Move;
 
 /* --- copying ------------------------------------------------------------------------------- */
@@ -60,6 +63,18 @@ static bool move_texture(Move *move, const Texture **texture)
     return move->to != NULL;
 }
 
+static bool move_interior(Move *move, const Interior **interior)
+{
+    if (!*interior)
+        return true;
+    if (*interior != move->inside_from) {
+        move->inside_from = *interior;
+        move->inside_to = interior_transform(move->arena, *interior, move->xform);
+    }
+    *interior = move->inside_to;
+    return move->inside_to != NULL;
+}
+
 static bool move_mesh_textures(Move *move, Node *node)
 {
     if (node->mesh_texture_count == 0)
@@ -104,7 +119,8 @@ static bool move_node(Move *move, Node *node)
     if (node->light)
         move_light(node->light, move->xform);
     return move_texture(move, &node->texture) && move_texture(move, &node->inner_texture) &&
-           move_mesh_textures(move, node) && move_list(move, node->children, node->child_count) &&
+           move_interior(move, &node->interior) && move_mesh_textures(move, node) &&
+           move_list(move, node->children, node->child_count) &&
            move_list(move, node->clips, node->clip_count) &&
            move_list(move, node->bounds, node->bound_count);
 }

@@ -9,6 +9,7 @@
 #include "base/diag.h"
 #include "shape/mesh.h"
 #include "shape/shape.h"
+#include "texture/media.h"
 #include "texture/texture.h"
 
 typedef enum Tri { TRI_UNSET, TRI_OFF, TRI_ON } Tri;
@@ -74,6 +75,8 @@ typedef struct Light {
     AreaLight area;
     Tri photon_reflection, photon_refraction;
     bool has_area_photons;
+    bool lights_media;             /* media_interaction: media scatter its light */
+    bool is_dimmed_by_media;       /* media_attenuation: fog and atmosphere take from it */
     float photon_share;            /* weight of its photon budget, 1 by default */
     Span span;
     const char *name;              /* "light 1" ... or its identifier */
@@ -108,6 +111,8 @@ typedef struct PhotonSettings {
     double jitter, autostop;
     int max_trace_level;      /* 0: the scene's */
     double adc_bailout;       /* 0: the scene's */
+    double media_steps;       /* media: above 0 photons are stored in media too */
+    double media_radius;      /* of the gathering there; 0: found from the density */
     Span span;
 } PhotonSettings;
 
@@ -153,6 +158,14 @@ typedef struct Sky {
     Span span;
 } Sky;
 
+/* What fills all space but the inside of objects that are not hollow. */
+typedef struct Atmosphere {
+    const Medium *const *media; /* in written order, as are the others */
+    const Fog *const *fogs;
+    const Rainbow *const *rainbows;
+    int media_count, fog_count, rainbow_count;
+} Atmosphere;
+
 typedef struct Scene {
     Arena *arena;       /* all that is reached from here */
     Arena *text;        /* sources that spans point into */
@@ -170,6 +183,7 @@ typedef struct Scene {
     Camera camera;
     Background background;
     Sky sky;
+    Atmosphere atmosphere;
     SceneSettings settings;
 } Scene;
 

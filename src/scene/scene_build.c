@@ -27,6 +27,7 @@ typedef struct Finisher {
     bool has_failed; /* memory is out */
     const Texture *default_texture;
     const Interior *default_interior;
+    const Interior *solid, *hollow; /* an interior, and its copy for hollow objects */
 } Finisher;
 
 /* --- adding ------------------------------------------------------------------------------------
@@ -166,18 +167,34 @@ static const Interior *interior_of_finish(Finisher *f, const Texture *texture)
     return f->default_interior;
 }
 
+/* Return the interior as a hollow object has it. */
+static const Interior *hollow_of(Finisher *f, const Interior *interior)
+{
+    if (interior != f->solid && interior) {
+        Interior *hollow = arena_copy(f->scene->arena, interior, sizeof *interior);
+        f->has_failed |= !hollow;
+        if (!hollow)
+            return interior;
+        hollow->is_hollow = true;
+        f->solid = interior;
+        f->hollow = hollow;
+    }
+    return interior ? f->hollow : NULL;
+}
+
 static uint32_t add_surface(Finisher *f, const Node *node, const Looks *looks)
 {
     Scene *scene = f->scene;
     if (f->is_counting)
         return scene->surface_count++;
     const Texture *texture = looks->texture ? looks->texture : f->default_texture;
+    const Interior *interior = looks->interior ? looks->interior : interior_of_finish(f, texture);
     scene->surfaces[scene->surface_count] = (Surface){
         .texture = texture,
         .inner_texture = looks->inner_texture,
         .mesh_textures = looks->mesh_textures,
         .mesh_texture_count = looks->mesh_texture_count,
-        .interior = looks->interior ? looks->interior : interior_of_finish(f, texture),
+        .interior = looks->hollow == TRI_ON ? hollow_of(f, interior) : interior,
         .photons = looks->photons,
         .no_shadow = looks->no_shadow,
         .no_image = looks->no_image,

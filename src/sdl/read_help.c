@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+enum { LIST_MAX = 1000 }; /* nodes of a list that is copied to grow */
+
 const char *read_word(Parser *p, const Token *token)
 {
     const Span s = token->span;
@@ -75,4 +77,17 @@ void *read_grow(Parser *p, void *items, size_t count, size_t *capacity, size_t i
         memcpy(grown, items, count * item_size);
     *capacity = grown_capacity;
     return grown;
+}
+
+const void *const *read_append(Parser *p, const void *const *list, int *count, const void *node)
+{
+    size_t used = (size_t)*count;
+    if (used == LIST_MAX)
+        parse_fail(p, parse_last_span(p), "more than %d of these", LIST_MAX);
+    const void **grown = parse_alloc(p, (used + 1) * sizeof *grown);
+    if (used)
+        memcpy(grown, list, used * sizeof *grown);
+    grown[used] = node;
+    ++*count;
+    return (const void *const *)grown;
 }

@@ -27,6 +27,10 @@ double read_not_negative(Parser *p, const char *what);
 /* Read a float or vector of colour components and check that it is finite. */
 Rgb read_rgb(Parser *p, const char *what);
 
+/* Return a list of the scene arena with one more node; the old one stays as it is, as others may
+ * share it. */
+const void *const *read_append(Parser *p, const void *const *list, int *count, const void *node);
+
 /* Grow a full array of the scene arena for one more item. */
 void *read_grow(Parser *p, void *items, size_t count, size_t *capacity, size_t item_size);
 
@@ -92,6 +96,17 @@ double read_ior(Parser *p);
 
 const ColorMap *read_color_map(Parser *p);
 
+/* Read what a pigment is made of (colour, checker, gradient ...) if that comes next. */
+bool read_pigment_type(Parser *p, Pigment *pigment);
+
+/* Read one modifier of a pigment into *pigment; fails on anything else. */
+void read_pigment_modifier(Parser *p, Pigment *pigment);
+
+/* media{} and what is in it. */
+const Medium *read_media(Parser *p);
+const Density *read_density(Parser *p);
+const Density *read_density_map(Parser *p);
+
 /* Return a texture with another pigment or finish in its top layer. */
 const Texture *read_with_pigment(Parser *p, const Texture *texture, const Pigment *pigment);
 const Texture *read_with_finish(Parser *p, const Texture *texture, const Finish *finish);
@@ -107,6 +122,8 @@ const Texture *read_default_texture(Parser *p);
 
 const Camera *read_camera(Parser *p);
 const Sky *read_sky_sphere(Parser *p);
+const Fog *read_fog(Parser *p);
+const Rainbow *read_rainbow(Parser *p);
 void read_background(Parser *p);
 void read_global_settings(Parser *p);
 void read_global_photons(Parser *p, PhotonSettings *photons);

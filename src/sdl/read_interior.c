@@ -40,7 +40,9 @@ static void read_interior_item(Parser *p, Interior *interior)
     case KW_DISPERSION_SAMPLES:
         parse_fail_not_yet(p, head.span, "dispersion");
     case KW_MEDIA:
-        parse_fail_not_yet(p, head.span, "media");
+        interior->media = (const Medium *const *)read_append(
+            p, (const void *const *)interior->media, &interior->media_count, read_media(p));
+        break;
     default:
         parse_fail_here(p, "in an interior");
     }
@@ -68,6 +70,9 @@ static void move_material(Parser *p, Material *material)
     if (material->inner_texture)
         material->inner_texture =
             parse_no_null(p, texture_transform(parse_arena(p), material->inner_texture, &xform));
+    if (material->interior)
+        material->interior =
+            parse_no_null(p, interior_transform(parse_arena(p), material->interior, &xform));
 }
 
 static void read_material_item(Parser *p, Material *material)

@@ -236,10 +236,13 @@ static void read_light_item(Parser *p, Node *node)
     case KW_PHOTONS:
         read_light_photons(p, light);
         break;
-    case KW_MEDIA_ATTENUATION: /* of media and fog, which fail by themselves */
+    case KW_MEDIA_ATTENUATION:
+        parse_next(p);
+        light->is_dimmed_by_media = parse_flag(p);
+        break;
     case KW_MEDIA_INTERACTION:
         parse_next(p);
-        parse_flag(p);
+        light->lights_media = parse_flag(p);
         break;
     case KW_LOOKS_LIKE:
         read_looks_like(p, node);
@@ -261,7 +264,7 @@ Node *read_light_source(Parser *p)
     node->kind = NODE_LIGHT;
     node->size = 1;
     Light *light = node->light = parse_alloc(p, sizeof *light);
-    *light = (Light){.point_at = {0, 0, 1}, .photon_share = 1};
+    *light = (Light){.point_at = {0, 0, 1}, .photon_share = 1, .lights_media = true};
     light->area.adaptive = ADAPTIVE_OFF;
     set_kind(light, LIGHT_POINT);
     light->location = parse_v3(p);

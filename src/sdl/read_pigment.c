@@ -73,12 +73,18 @@ static Pattern plain_pattern(PatternKind kind, float frequency)
     return (Pattern){.kind = kind, .frequency = frequency, .exponent = 1, .xform = XFORM_IDENTITY};
 }
 
-/* Read one item of a list pattern: a colour or a pigment block; NULL if neither comes next. */
+/* Read one item of a list pattern: a colour, a pigment or density; NULL if none comes next. */
 static const Pigment *read_list_item(Parser *p)
 {
     Span span = parse_peek(p)->span;
     if (parse_peek(p)->kind == KW_PIGMENT)
         return read_pigment(p, solid_pigment(p, color5(0, 0, 0), span));
+    if (parse_peek(p)->kind == KW_DENSITY) {
+        const Density *density = read_density(p);
+        if (density->map)
+            parse_fail_not_yet(p, span, "a density_map in a list of densities");
+        return density->pigment;
+    }
     if (parse_is_color(p) || parse_is_expression(p))
         return solid_pigment(p, parse_color(p), span);
     return NULL;
@@ -121,8 +127,7 @@ static void read_gradient(Parser *p, Pigment *pigment)
     pigment->pattern.direction = direction;
 }
 
-/* Read what a pigment is made of if that comes next. */
-static bool read_pigment_type(Parser *p, Pigment *pigment)
+bool read_pigment_type(Parser *p, Pigment *pigment)
 {
     Token head = *parse_peek(p);
     if (head.kind == KW_CHECKER) {
@@ -182,8 +187,8 @@ static void read_map_modifier(Parser *p, Pigment *pigment)
     pigment->map_count = map->count;
 }
 
-/* Read one modifier into *pigment, which a transform may replace. */
-static void read_pigment_modifier(Parser *p, Pigment *pigment)
+/* A transform may replace *pigment. */
+void read_pigment_modifier(Parser *p, Pigment *pigment)
 {
     if (parse_is_xform(p)) {
         Xform xform = parse_xform(p);

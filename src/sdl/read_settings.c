@@ -31,19 +31,21 @@ static void read_photon_radius(Parser *p, PhotonSettings *photons)
         if (!parse_is_expression(p))
             return;
         double value = read_finite(p, "radius", NULL);
-        if (i == 1 && value != 1)
-            parse_warn(p, WARN_LANGUAGE, word.span, "the second radius has no effect in pms");
+        if (i == 2)
+            photons->media_radius = value > 0 ? value : 0;
+        else if (value != 1)
+            parse_warn(p, WARN_LANGUAGE, word.span, "the factors of radius have no effect in pms");
     }
 }
 
-/* Steps of photons in media, which have none to take: media fail by themselves. */
-static void read_photon_media(Parser *p)
+/* media STEPS [FACTOR]: any steps at all make photons stay in media; pms chooses how many. */
+static void read_photon_media(Parser *p, PhotonSettings *photons)
 {
-    parse_next(p);
-    read_not_negative(p, "media");
+    Token word = parse_next(p);
+    photons->media_steps = read_not_negative(p, "media");
     parse_comma(p);
-    if (parse_is_expression(p))
-        read_above_zero(p, "the factor of media");
+    if (parse_is_expression(p) && read_above_zero(p, "the factor of media") != 1)
+        parse_warn(p, WARN_LANGUAGE, word.span, "the factor of media has no effect in pms");
 }
 
 /* pms takes the nearest photons there are; it does not widen its search by trial. */
@@ -103,7 +105,7 @@ static void read_photon_item(Parser *p, PhotonSettings *photons)
         read_photon_radius(p, photons);
         break;
     case KW_MEDIA:
-        read_photon_media(p);
+        read_photon_media(p, photons);
         break;
     case KW_EXPAND_THRESHOLDS:
         read_expand_thresholds(p);

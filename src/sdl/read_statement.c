@@ -33,6 +33,21 @@ static void read_stray_setting(Parser *p)
     parse_warn(p, WARN_LANGUAGE, word.span, "this belongs in global_settings: it is ignored");
 }
 
+/* media, fog and rainbow add up. */
+static void read_atmosphere(Parser *p, TokenKind word)
+{
+    Atmosphere *air = &parse_scene(p)->atmosphere;
+    if (word == KW_MEDIA)
+        air->media = (const Medium *const *)read_append(p, (const void *const *)air->media,
+                                                        &air->media_count, read_media(p));
+    else if (word == KW_FOG)
+        air->fogs = (const Fog *const *)read_append(p, (const void *const *)air->fogs,
+                                                    &air->fog_count, read_fog(p));
+    else
+        air->rainbows = (const Rainbow *const *)read_append(p, (const void *const *)air->rainbows,
+                                                            &air->rainbow_count, read_rainbow(p));
+}
+
 void read_statement(Parser *p)
 {
     switch (parse_peek(p)->kind) {
@@ -44,6 +59,11 @@ void read_statement(Parser *p)
         return;
     case KW_SKY_SPHERE:
         read_sky_statement(p);
+        return;
+    case KW_MEDIA:
+    case KW_FOG:
+    case KW_RAINBOW:
+        read_atmosphere(p, parse_peek(p)->kind);
         return;
     case KW_GLOBAL_SETTINGS:
         read_global_settings(p);
@@ -129,6 +149,21 @@ bool read_value(Parser *p, Value *out)
     case KW_COLOR_MAP:
     case KW_COLOUR_MAP:
         set_value(out, VALUE_COLOR_MAP, read_color_map(p), span);
+        return true;
+    case KW_MEDIA:
+        set_value(out, VALUE_MEDIA, read_media(p), span);
+        return true;
+    case KW_DENSITY:
+        set_value(out, VALUE_DENSITY, read_density(p), span);
+        return true;
+    case KW_DENSITY_MAP:
+        set_value(out, VALUE_DENSITY_MAP, read_density_map(p), span);
+        return true;
+    case KW_FOG:
+        set_value(out, VALUE_FOG, read_fog(p), span);
+        return true;
+    case KW_RAINBOW:
+        set_value(out, VALUE_RAINBOW, read_rainbow(p), span);
         return true;
     default:
         break;

@@ -33,6 +33,11 @@ typedef enum ValueKind {
     VALUE_CAMERA,    /* node: const Camera */
     VALUE_COLOR_MAP, /* node: const ColorMap (scene/node.h) */
     VALUE_SKY,       /* node: const Sky */
+    VALUE_MEDIA,     /* node: const Medium */
+    VALUE_DENSITY,   /* node: const Density */
+    VALUE_DENSITY_MAP, /* node: const Density, of which only the map counts */
+    VALUE_FOG,       /* node: const Fog */
+    VALUE_RAINBOW,   /* node: const Rainbow */
     VALUE_KIND_COUNT
 } ValueKind;
 
@@ -128,7 +133,8 @@ void *parse_no_null(Parser *p, const void *node);
  * background, global_settings ...); fails on anything else. */
 void read_statement(Parser *p);
 /* If the next token begins a block that can be a value (an object, texture, pigment, finish,
- * interior, material, transform, camera, color_map, sky_sphere), read it into *out and return
+ * interior, material, media, density, transform, camera, color_map, density_map, sky_sphere, fog,
+ * rainbow), read it into *out and return
  * true.  Past the closing brace it may look only with parse_is_next. */
 bool read_value(Parser *p, Value *out);
 /* #default { ... }, after its opening brace and up to and including the closing one. */

@@ -16,7 +16,9 @@ const char *value_text(const Value *value)
         [VALUE_FINISH] = "a finish",     [VALUE_INTERIOR] = "an interior",
         [VALUE_MATERIAL] = "a material", [VALUE_TRANSFORM] = "a transform",
         [VALUE_CAMERA] = "a camera",     [VALUE_COLOR_MAP] = "a color_map",
-        [VALUE_SKY] = "a sky_sphere"};
+        [VALUE_SKY] = "a sky_sphere",    [VALUE_MEDIA] = "a media",
+        [VALUE_DENSITY] = "a density",   [VALUE_DENSITY_MAP] = "a density_map",
+        [VALUE_FOG] = "a fog",           [VALUE_RAINBOW] = "a rainbow"};
     return value->kind == VALUE_NUMBERS ? numbers[value->count] : kinds[value->kind];
 }
 

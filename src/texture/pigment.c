@@ -25,6 +25,11 @@ static Color5 map_color(const MapEntry *map, int count, double v)
                     mix(a->color.transmit, b->color.transmit, t)};
 }
 
+Color5 pigment_map_color(const Pigment *pigment, double value)
+{
+    return map_color(pigment->map, pigment->map_count, value);
+}
+
 Color5 pigment_at(const Pigment *pigment, V3 p)
 {
     /* Lists nest: walk down without recursion. */

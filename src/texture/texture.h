@@ -112,12 +112,17 @@ typedef struct Texture {
     int layer_count; /* at least 1 */
 } Texture;
 
+typedef struct Medium Medium; /* texture/media.h */
+
 typedef struct Interior {
     Span span;
     double ior;             /* 1: as outside */
     double fade_distance, fade_power; /* scene units; distance 0: no absorption */
     Rgb fade_color;
     float caustics;
+    const Medium *const *media; /* in written order; they count in hollow objects only */
+    int media_count;
+    bool is_hollow; /* of hollow objects: set when the scene is built */
 } Interior;
 
 #define INTERIOR_DEFAULT ((Interior){.ior = 1})
@@ -125,6 +130,9 @@ typedef struct Interior {
 /* Return the pigment's colour at a world point.  Pigments in a list are evaluated at the point
  * the outer pattern sees.  Never fails.  Any thread. */
 Color5 pigment_at(const Pigment *pigment, V3 p);
+
+/* Return the colour of a pigment's color_map for a value of its pattern. */
+Color5 pigment_map_color(const Pigment *pigment, double value);
 
 /* Return a pigment or texture seen through `xform` (a new node, or the old one when nothing
  * depends on place); NULL when memory is out. */

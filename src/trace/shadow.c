@@ -5,6 +5,7 @@
  * visited in order of t (each object keeps its next crossing) and filter the light, and an
  * interior absorbs along the stretch that ends where the ray leaves it.
  * SPDX-License-Identifier: Apache-2.0 */
+#include "trace/media_along.h"
 #include "trace/trace_int.h"
 
 enum { FILTERS_FEW = 16 }; /* objects noted without asking for memory */
@@ -273,10 +274,15 @@ Rgb trace_shadow_of(TraceThread *thread, const ShadowBundle *bundle, const Shape
             thread->blockers[light] = query.blocker;
         return RGB_BLACK;
     }
-    if (query.count == 0)
-        return RGB_WHITE;
-    thread->stats.count[STAT_SHADOW_FILTER_WALKS]++;
-    return walk_filters(&query, &ray);
+    Rgb passed = RGB_WHITE;
+    if (query.count > 0) {
+        thread->stats.count[STAT_SHADOW_FILTER_WALKS]++;
+        passed = walk_filters(&query, &ray);
+    }
+    if (thread->tracer->media_count > 0 && !rgb_is_black(passed))
+        passed = rgb_mul(
+            passed, media_shadow(thread, &ray, query.light && query.light->is_dimmed_by_media));
+    return passed;
 }
 
 Rgb trace_shadow(TraceThread *thread, const ShapePoint *from, V3 to, double distance, int light,

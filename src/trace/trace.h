@@ -27,6 +27,7 @@ typedef struct TraceThread {
     ShapeScratch *shapes;
     Arena *scratch;     /* reset by the pass after each sample or photon */
     uint32_t *blockers; /* per light: the object that blocked its last shadow ray, or none */
+    Rng media_rng;      /* of the sample or photon at hand: where media are looked at */
     Stats stats;
 } TraceThread;
 Status trace_thread_init(TraceThread *thread, const Tracer *tracer, Diag *diag);
@@ -86,7 +87,8 @@ typedef struct Interiors {
 } Interiors;
 
 /* Fill `out` with the interiors that contain p (for a camera or light inside glass): those of
- * objects that let light through, by size. */
+ * objects that let light through, by size; where there are media, fog or rainbows those of opaque
+ * ones too. */
 void interiors_at(const Tracer *tracer, V3 p, Interiors *out);
 
 /* One layer of a surface, evaluated.  Colours are pov-facts' symbols: see finish arithmetic in

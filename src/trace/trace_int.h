@@ -38,8 +38,10 @@ struct Tracer {
     uint32_t *index_objects; /* item of the index to object; ascending */
     uint32_t *unbounded;     /* objects apart, ascending */
     uint32_t unbounded_count;
-    uint32_t *clear; /* solids that may let light through, ascending */
+    uint32_t *clear; /* solids a ray may be inside of, ascending */
     uint32_t clear_count;
+    uint32_t *media; /* solids with media in them that are seen, ascending */
+    uint32_t media_count;
     BundleIndex *bundles;
     ViewIndex *camera_view;  /* NULL: none */
     ViewIndex **light_views; /* per light; NULL: none */

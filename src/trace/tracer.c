@@ -12,7 +12,7 @@ enum { VIEW_OBJECTS_MAX = 1024, VIEW_LIGHTS_MAX = 32 };
 
 /* Which surfaces the leaves of a shape have. */
 typedef struct LeafSummary {
-    bool may_transmit, has_filter, has_filter_besides_targets, is_closed;
+    bool may_transmit, has_filter, has_filter_besides_targets, is_closed, has_media;
 } LeafSummary;
 
 static bool is_refracting_target(const Surface *surface)
@@ -49,6 +49,7 @@ static void summarize(const Tracer *tracer, const Shape *shape, LeafSummary *sum
     sum->has_filter |= is_filter;
     sum->has_filter_besides_targets |= is_filter && !is_refracting_target(surface);
     sum->may_transmit |= surface->may_transmit;
+    sum->has_media |= surface->interior->is_hollow && surface->interior->media_count > 0;
 }
 
 /* Return the largest factor by which the transform stretches: exact when its columns are at
@@ -106,8 +107,14 @@ static void describe_object(Tracer *tracer, uint32_t i)
         out->shadow = SHADOW_BLOCK;
     else
         out->shadow = sum.has_filter_besides_targets ? SHADOW_FILTER : SHADOW_TARGET;
-    if (sum.may_transmit && shape_is_solid(object->shape))
+    if (!shape_is_solid(object->shape))
+        return;
+    bool has_media = sum.has_media && plan_has(tracer->plan, FEATURE_MEDIA);
+    /* What is not hollow has no fog inside, opaque or not. */
+    if (sum.may_transmit || plan_has_air(tracer->plan))
         tracer->clear[tracer->clear_count++] = i;
+    if (has_media)
+        tracer->media[tracer->media_count++] = i;
 }
 
 /* Rays to this light all end in one point. */
@@ -186,7 +193,8 @@ Status tracer_new(const Scene *scene, const Plan *plan, int threads, Diag *diag,
     tracer->objects = mem_array((size_t)scene->object_count + 1, sizeof *tracer->objects);
     tracer->clear = mem_array((size_t)scene->object_count + 1, sizeof *tracer->clear);
     tracer->light_views = mem_array((size_t)scene->light_count + 1, sizeof *tracer->light_views);
-    if (!tracer->objects || !tracer->clear || !tracer->light_views) {
+    tracer->media = mem_array((size_t)scene->object_count + 1, sizeof *tracer->media);
+    if (!tracer->objects || !tracer->clear || !tracer->media || !tracer->light_views) {
         tracer_free(tracer);
         return diag_no_memory(diag, "the tracer");
     }
@@ -222,6 +230,7 @@ void tracer_free(Tracer *tracer)
     mem_free(tracer->index_objects);
     mem_free(tracer->unbounded);
     mem_free(tracer->clear);
+    mem_free(tracer->media);
     mem_free(tracer->objects);
     mem_free(tracer);
 }

@@ -59,21 +59,6 @@ static void maps_are_made_when_called_for(void **state)
     }
 }
 
-/* Row S11: there is no volume map, for nothing can call for it: a scene with light in a medium is
- * refused as it is read. */
-static void media_call_for_a_volume_map_in_vain(void **state)
-{
-    (void)state;
-    LitScene lit = {0};
-    const char *text = ON "sphere { 0, 1 hollow interior { media { scattering { 1, 1 } } } }\n";
-    SdlOptions options = {.width = 320, .height = 240, .threads = 1};
-    diag_init(&lit.diag, lit_listen, &lit);
-    Status status = sdl_load_text(&lit.diag, "test.pms", text, strlen(text), &options, &lit.scene);
-    assert_int_equal(status, ERR_SYNTAX);
-    assert_non_null(strstr(lit.messages, "media"));
-    diag_done(&lit.diag);
-}
-
 /* --- what each map holds --------------------------------------------------------------------- */
 
 static bool is_on_line(V3 from, V3 p, V3 box_lo, V3 box_hi)
@@ -419,7 +404,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(maps_are_made_when_called_for),
-        cmocka_unit_test(media_call_for_a_volume_map_in_vain),
         cmocka_unit_test(caustic_map_holds_specular_paths_only),
         cmocka_unit_test(global_map_holds_all_hits_but_the_first),
         cmocka_unit_test(all_light_arrives_once),

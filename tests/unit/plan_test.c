@@ -290,6 +290,47 @@ static void camera_sky_and_interior_have_their_rows(void **state)
     assert_true(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_ABSORPTION));
 }
 
+static void media_fog_and_rainbows_have_their_rows(void **state)
+{
+    Small *s = *state;
+    Medium medium = MEDIUM_DEFAULT;
+    const Medium *media[1] = {&medium};
+    medium.span = span_at(s, 5);
+    s->interior.media = media;
+    s->interior.media_count = 1;
+    s->interior.is_hollow = true;
+    assert_false(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_MEDIA)); /* it does nothing */
+    medium.absorption = rgb(0, 0, 1);
+    assert_true(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_MEDIA));
+    assert_int_equal(s->plan.rows[FEATURE_MEDIA].why.begin, 5);
+    assert_false(has(s, (PlanOptions){.quality = 8}, FEATURE_MEDIA));
+    s->interior.is_hollow = false;
+    assert_false(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_MEDIA));
+    s->scene.atmosphere.media = media;
+    s->scene.atmosphere.media_count = 1;
+    assert_true(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_MEDIA));
+
+    Fog fog = {.distance = 0, .span = span_at(s, 6)};
+    const Fog *fogs[1] = {&fog};
+    s->scene.atmosphere.fogs = fogs;
+    s->scene.atmosphere.fog_count = 1;
+    assert_false(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_FOG));
+    fog.distance = 10;
+    assert_true(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_FOG));
+    assert_int_equal(s->plan.rows[FEATURE_FOG].why.begin, 6);
+
+    const MapEntry colors[1] = {{0, {1, 1, 1, 0, 0}}};
+    Rainbow bow = {.span = span_at(s, 7)};
+    const Rainbow *bows[1] = {&bow};
+    s->scene.atmosphere.rainbows = bows;
+    s->scene.atmosphere.rainbow_count = 1;
+    assert_false(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_RAINBOW));
+    bow.map = colors;
+    bow.map_count = 1;
+    assert_true(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_RAINBOW));
+    assert_false(has(s, (PlanOptions){.quality = 8}, FEATURE_RAINBOW));
+}
+
 #define PLAN_TEST(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
 
 int main(void)
@@ -309,6 +350,7 @@ int main(void)
         PLAN_TEST(quality_switches_effects_off),
         PLAN_TEST(highlights_want_a_light_that_makes_them),
         PLAN_TEST(camera_sky_and_interior_have_their_rows),
+        PLAN_TEST(media_fog_and_rainbows_have_their_rows),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,32 @@
+/* What lies between the eye and what it sees: media, fog, rainbows; for eye/ only.
+ * SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_EYE_AIR_INT_H
+#define PMS_EYE_AIR_INT_H
+
+#include "eye/eye_int.h"
+#include "trace/media_along.h"
+
+/* What a stretch of a ray does to what is seen through it. */
+typedef struct Veil {
+    Rgb through;           /* share of what lies behind that is seen */
+    Rgb light[PART_COUNT]; /* added in front of it */
+} Veil;
+
+/* Find what lies along the first `length` scene units of a ray inside `inside`; an infinite length
+ * is that of a ray that meets nothing.
+ *
+ * is_indirect  the ray looks for light that will be reflected or scattered again. */
+void air_along(EyeThread *eye, const Ray *ray, double length, const Interiors *inside,
+               bool is_indirect, Veil *out);
+
+/* Return what passes the media along the first `length` scene units of a ray. */
+Rgb air_clear(EyeThread *eye, const Ray *ray, double length, const Interiors *inside);
+
+/* Add to *light what the lights send through the media to the eye, once scattered. */
+void media_scatter(EyeThread *eye, const MediaHere *here, const MediaProfile *profile,
+                   const Ray *ray, Rgb *light);
+
+/* The part of a ray, from begin to end, on which a light can shine; returns false if none is. */
+bool light_stretch(const Light *light, const Ray *ray, double *begin, double *end);
+
+#endif

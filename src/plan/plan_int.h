@@ -1,0 +1,10 @@
+/* Parts of the plan; for plan/ only.  SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_PLAN_PLAN_INT_H
+#define PMS_PLAN_PLAN_INT_H
+
+#include "plan/plan.h"
+
+/* Set the rows of media, fog and rainbows. */
+void plan_media(const Scene *scene, int quality, PlanRow *rows);
+
+#endif

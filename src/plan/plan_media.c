@@ -1,0 +1,81 @@
+/* The rows of the plan for what fills space: media, fog, rainbows.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "plan/plan_int.h"
+
+#include <stdio.h>
+
+/* Quality from which on there are media, fog and rainbows. */
+enum { QUALITY_MEDIA = 9 };
+
+static void set_row(PlanRow *row, bool is_on, Span why, const char *reason)
+{
+    *row = (PlanRow){.is_on = is_on, .why = why};
+    snprintf(row->reason, sizeof row->reason, "%s", reason);
+}
+
+static const Medium *first_seen(const Medium *const *media, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (medium_is_seen(media[i]))
+            return media[i];
+    return NULL;
+}
+
+/* Return the first medium of an object in which it counts, or NULL. */
+static const Medium *first_contained(const Scene *scene)
+{
+    for (uint32_t i = 0; i < scene->surface_count; i++) {
+        const Surface *s = &scene->surfaces[i];
+        const Medium *found = first_seen(s->interior->media, s->interior->media_count);
+        if (found && s->interior->is_hollow)
+            return found;
+    }
+    return NULL;
+}
+
+static void plan_medium(const Scene *scene, PlanRow *row)
+{
+    const Medium *air = first_seen(scene->atmosphere.media, scene->atmosphere.media_count);
+    const Medium *inside = first_contained(scene);
+    if (air)
+        set_row(row, true, air->span, "media of the atmosphere");
+    else if (inside)
+        set_row(row, true, inside->span, "media in a hollow object");
+    else
+        set_row(row, false, SPAN_NONE, "no media, or only in objects that are not hollow");
+}
+
+static void plan_fog(const Scene *scene, PlanRow *row)
+{
+    const Atmosphere *air = &scene->atmosphere;
+    for (int i = 0; i < air->fog_count; i++)
+        if (air->fogs[i]->distance > 0) {
+            set_row(row, true, air->fogs[i]->span, "a fog");
+            return;
+        }
+    set_row(row, false, SPAN_NONE, air->fog_count > 0 ? "a fog without distance" : "no fog");
+}
+
+static void plan_rainbow(const Scene *scene, PlanRow *row)
+{
+    const Atmosphere *air = &scene->atmosphere;
+    for (int i = 0; i < air->rainbow_count; i++)
+        if (air->rainbows[i]->map) {
+            set_row(row, true, air->rainbows[i]->span, "a rainbow");
+            return;
+        }
+    set_row(row, false, SPAN_NONE,
+            air->rainbow_count > 0 ? "a rainbow without color_map" : "no rainbow");
+}
+
+void plan_media(const Scene *scene, int quality, PlanRow *rows)
+{
+    plan_medium(scene, &rows[FEATURE_MEDIA]);
+    plan_fog(scene, &rows[FEATURE_FOG]);
+    plan_rainbow(scene, &rows[FEATURE_RAINBOW]);
+    for (int i = FEATURE_MEDIA; i <= FEATURE_RAINBOW && quality < QUALITY_MEDIA; i++) {
+        set_row(&rows[i], false, SPAN_NONE, "");
+        snprintf(rows[i].reason, sizeof rows[i].reason, "quality %d (from %d on)", quality,
+                 QUALITY_MEDIA);
+    }
+}
