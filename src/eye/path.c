@@ -54,13 +54,6 @@ typedef struct Path {
 
 /* --- what a path finds -------------------------------------------------------------------- */
 
-static Rgb leg_fade(const Path *path, double t)
-{
-    if (path->inside.count == 0)
-        return RGB_WHITE;
-    return interior_fade(path->inside.in[path->inside.count - 1], t, false);
-}
-
 static void weigh(Path *path, Rgb factor)
 {
     path->weight = rgb_mul(path->weight, factor);
@@ -80,7 +73,7 @@ static void add_met_lights(EyeThread *eye, const Path *path, double t, Radiance 
             !light_meet(light->light, eye->plan->light_radius, &path->ray, t, path->length, &met))
             continue;
         Rgb weight = is_caustic ? path->shine : path->weight;
-        weight = rgb_mul(weight, leg_fade(path, met.t));
+        weight = rgb_mul(weight, interiors_fade(&path->inside, met.t));
         if (eye->has_air)
             weight = rgb_mul(weight, air_clear(eye, &path->ray, met.t, &path->inside));
         add_part(out, is_caustic ? PART_CAUSTIC : PART_INDIRECT, weight, met.radiance);
@@ -324,7 +317,7 @@ void path_radiance(EyeThread *eye, const Ray *ray, const Interiors *interiors, R
             add_sky(eye, &path, out);
             break;
         }
-        weigh(&path, leg_fade(&path, hit.t));
+        weigh(&path, interiors_fade(&path.inside, hit.t));
         path.length += hit.t;
         surface_sample(&eye->trace, &path.ray, &hit, &path.inside, &s);
         if (path.surfaces++ == 0)

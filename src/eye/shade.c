@@ -201,6 +201,7 @@ static void radiance(EyeThread *eye, Path *path, Radiance *out, EyeSample *first
             return; /* nothing shows through the air */
         if (!path->is_straight)
             path->level++;
+        path->through = rgb_mul(path->through, interiors_fade(&path->inside, hit.t));
         surface_sample(&eye->trace, &path->ray, &hit, &path->inside, &s);
         if (first && surfaces == 0)
             describe_first(&hit, &s, first);

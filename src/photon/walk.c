@@ -43,16 +43,6 @@ static Rgb not_negative(Rgb c)
     return rgb(fmaxf(c.r, 0), fmaxf(c.g, 0), fmaxf(c.b, 0));
 }
 
-/* Light of an interior's absorption on the way to the surface. */
-static void absorb_segment(Walk *walk, double t)
-{
-    if (walk->inside.count == 0)
-        return;
-    const Interior *interior = walk->inside.in[walk->inside.count - 1];
-    if (interior->fade_distance > 0)
-        walk->weight = rgb_mul(walk->weight, interior_fade(interior, t, false));
-}
-
 static Rgb flux_here(Walk *walk)
 {
     if (!walk->is_diffuse && walk->flux_length != walk->length) {
@@ -161,13 +151,27 @@ static bool store(Walk *walk, const SurfaceSample *s, Rgb power, float least, Ph
     return true;
 }
 
-static bool is_kept(const Walk *walk, const SurfaceSample *s, Rgb diffuse)
+static const Surface *tied_surface(const Walk *walk, const HitTie *tie)
+{
+    return &tracer_scene(walk->thread->tracer)->surfaces[tie->crossing.leaf->surface];
+}
+
+/* Clear glass that collects nothing does not keep the table it stands on from it. */
+static bool is_collecting(const Walk *walk, const Hit *hit)
+{
+    bool is = hit->surface->photons.is_collecting;
+    for (int i = 0; i < hit->tie_count; i++)
+        is = is || tied_surface(walk, &hit->ties[i])->photons.is_collecting;
+    return is;
+}
+
+static bool is_kept(const Walk *walk, const Hit *hit, Rgb diffuse)
 {
     if (rgb_is_black(diffuse))
         return false;
     if (walk->rules->map == MAP_GLOBAL)
         return walk->is_diffuse;
-    return walk->is_specular && s->surface->photons.is_collecting;
+    return walk->is_specular && is_collecting(walk, hit);
 }
 
 /* --- the way ---------------------------------------------------------------------------- */
@@ -242,10 +246,14 @@ static bool follow(Walk *walk, const SurfaceSample *s, const Roulette *r, Branch
     return false;
 }
 
-static bool is_target(const Beam *beam, const Hit *hit)
+static bool is_target(const Walk *walk, const Hit *hit)
 {
-    return hit->object == beam->target &&
-           (isinf(beam->reach) || v3_dist(hit->point.p, beam->center) <= beam->reach);
+    const Beam *beam = walk->beam;
+    const Scene *scene = tracer_scene(walk->thread->tracer);
+    bool is = hit->object == beam->target;
+    for (int i = 0; i < hit->tie_count; i++)
+        is = is || &scene->objects[hit->ties[i].object] == beam->target;
+    return is && (isinf(beam->reach) || v3_dist(hit->point.p, beam->center) <= beam->reach);
 }
 
 /* Go to the next surface.  Returns false, with the end of the path, when there is none to go on
@@ -259,7 +267,7 @@ static bool advance(Walk *walk, Hit *hit, SurfaceSample *s, PathEnd *end)
     walk->length += hit->t;
     const PhotonFlags *flags = &hit->surface->photons;
     if (!walk->is_aimed && !flags->is_pass_through) {
-        walk->is_aimed = is_target(walk->beam, hit);
+        walk->is_aimed = is_target(walk, hit);
         if (!walk->is_aimed) { /* something is in the way; if a target, it has its own beam */
             *end = PATH_CUT;
             return false;
@@ -268,7 +276,7 @@ static bool advance(Walk *walk, Hit *hit, SurfaceSample *s, PathEnd *end)
     if (!walk->is_straight)
         walk->level++;
     surface_sample(walk->thread, &walk->ray, hit, &walk->inside, s);
-    absorb_segment(walk, hit->t);
+    walk->weight = rgb_mul(walk->weight, interiors_fade(&walk->inside, hit->t));
     return true;
 }
 
@@ -286,15 +294,15 @@ static bool is_beyond_reach(const Walk *walk, const SurfaceSample *s)
 }
 
 /* Store what is to be stored and throw the dice; returns false when the path ends here. */
-static bool meet_surface(Walk *walk, const SurfaceSample *s, float least, PhotonList *out,
-                         WalkResult *result)
+static bool meet_surface(Walk *walk, const Hit *hit, const SurfaceSample *s, float least,
+                         PhotonList *out, WalkResult *result)
 {
     Rgb diffuse = not_negative(surface_diffuse_from(s, s->wo));
     if (!rgb_is_black(diffuse) && is_beyond_reach(walk, s)) {
         result->end = PATH_CUT;
         return false;
     }
-    if (is_kept(walk, s, diffuse)) {
+    if (is_kept(walk, hit, diffuse)) {
         Rgb power = rgb_mul(flux_here(walk), walk->weight);
         if (store(walk, s, power, least, out) && result->stored++ == 0)
             result->left = power;
@@ -332,7 +340,7 @@ void photon_walk(TraceThread *thread, const WalkRules *rules, const Beam *beam,
             pass_through(&walk, &s);
             if (is_over_limit(&walk))
                 break;
-        } else if (!meet_surface(&walk, &s, least, out, result)) {
+        } else if (!meet_surface(&walk, &hit, &s, least, out, result)) {
             break;
         }
     }

@@ -9,12 +9,18 @@
 /* More objects than this in one place: the first ones stay. */
 enum { TIES_MAX = 1 + HIT_TIES_MAX };
 
-/* Two hits count as one place only if closer than this part of t, whatever their errors. */
+/* Hits closer than this many of their errors are one place: a ray that leaves a surface starts
+ * somewhat off it, and what lies between must have been met.  Links in a row make a place as
+ * large as TIE_LINKS of them at most. */
+#define TIE_ERRORS 16.0
+#define TIE_LINKS 4.0
+
+/* But no two are that are further apart than this part of t, whatever their errors. */
 #define TIE_CAP 0x1p-30
 
 typedef struct Candidate {
     Crossing crossing;
-    double error; /* half width of the interval t is in */
+    double slack; /* others whose t and slack overlap it are in the same place */
     uint32_t object;
 } Candidate;
 
@@ -23,22 +29,43 @@ typedef struct ClosestQuery {
     const TracedObject *objects;
     const uint32_t *index_objects;
     RayKind kind;
-    double t, error; /* of the nearest so far */
+    double t, slack; /* of the nearest so far */
     int count;
-    Candidate found[TIES_MAX]; /* all that overlap the nearest, by object */
+    Candidate found[TIES_MAX]; /* all that may be in its place, by object */
 } ClosestQuery;
 
-/* Drop what no longer overlaps the nearest hit. */
-static void drop_far(ClosestQuery *query)
+/* Drop what is behind `end`. */
+static void drop_far(ClosestQuery *query, double end)
 {
     int kept = 0;
     for (int i = 0; i < query->count; i++)
-        if (query->found[i].crossing.t - query->found[i].error <= query->t + query->error)
+        if (query->found[i].crossing.t - query->found[i].slack <= end)
             query->found[kept++] = query->found[i];
     query->count = kept;
 }
 
-static void insert(ClosestQuery *query, const Crossing *crossing, double error, uint32_t object)
+/* Return how far the place of the nearest hit may reach. */
+static double place_limit(const ClosestQuery *query)
+{
+    return query->t + TIE_LINKS * query->slack;
+}
+
+/* Keep what is in the place of the nearest hit: linked to it by slacks that overlap. */
+static void keep_place(ClosestQuery *query)
+{
+    double end = query->t + query->slack, before;
+    do {
+        before = end;
+        for (int i = 0; i < query->count; i++) {
+            const Candidate *c = &query->found[i];
+            if (c->crossing.t - c->slack <= end)
+                end = fmax(end, c->crossing.t + c->slack);
+        }
+    } while (end > before);
+    drop_far(query, end);
+}
+
+static void insert(ClosestQuery *query, const Crossing *crossing, double slack, uint32_t object)
 {
     int at = query->count;
     while (at > 0 && query->found[at - 1].object > object)
@@ -50,7 +77,7 @@ static void insert(ClosestQuery *query, const Crossing *crossing, double error, 
     for (int i = query->count - 1; i > at; i--)
         query->found[i] = query->found[i - 1];
     query->found[at].crossing = *crossing;
-    query->found[at].error = error;
+    query->found[at].slack = slack;
     query->found[at].object = object;
 }
 
@@ -61,22 +88,23 @@ static void test_object(ClosestQuery *query, uint32_t object, Ray *ray)
     if (traced->is_hidden[query->kind] ||
         !shape_closest(traced->shape, ray, query->thread->shapes, &crossing))
         return;
-    double t = crossing.t;
-    double error = crossing.t_error < t * TIE_CAP ? crossing.t_error : t * TIE_CAP;
-    if (query->count == 0 || t + error < query->t - query->error) {
+    double t = crossing.t, slack = TIE_ERRORS * crossing.t_error;
+    if (slack > t * TIE_CAP)
+        slack = t * TIE_CAP;
+    if (query->count == 0 || t + TIE_LINKS * slack < query->t - query->slack) {
         query->count = 0;
         query->t = t;
-        query->error = error;
-    } else if (t - error > query->t + query->error) {
+        query->slack = slack;
+    } else if (t - slack > place_limit(query)) {
         return;
     } else if (t < query->t) {
         query->t = t;
-        query->error = error;
-        drop_far(query);
+        query->slack = slack;
+        drop_far(query, place_limit(query));
     }
-    insert(query, &crossing, error, object);
-    /* Far enough to see a hit at the same t whose error is no larger, and the same t again. */
-    double end = query->t * (1 + 0x1p-51) + 2 * query->error;
+    insert(query, &crossing, slack, object);
+    /* Far enough to see a hit in the place whose slack is no larger, and the same t again. */
+    double end = query->t * (1 + 0x1p-51) + (TIE_LINKS + 1) * query->slack;
     if (end < ray->tmax)
         ray->tmax = end;
 }
@@ -89,16 +117,21 @@ static bool test_item(void *ctx, uint32_t item, Ray *ray)
 }
 
 /* Hand on the other surfaces in the place, and let its error cover them. */
-static void fill_ties(const ClosestQuery *query, Hit *out)
+static void fill_ties(const ClosestQuery *query, const Ray *ray, Hit *out)
 {
-    const Crossing *first = &query->found[0].crossing;
+    ShapePoint *point = &out->point;
+    double error = point->p_error;
     out->tie_count = query->count - 1;
     for (int i = 0; i < out->tie_count; i++) {
         const Candidate *other = &query->found[i + 1];
-        double spread = fabs(other->crossing.t - first->t) + other->error + query->found[0].error;
-        out->point.p_error = fmax(out->point.p_error, spread);
-        out->ties[i] = (HitTie){other->crossing, other->object};
+        HitTie *tie = &out->ties[i];
+        tie->crossing = other->crossing;
+        tie->object = other->object;
+        shape_point(&tie->crossing, ray, &tie->point);
+        double apart = fabs(v3_dot(v3_sub(tie->point.p, point->p), point->ng));
+        error = fmax(error, apart + tie->point.p_error);
     }
+    point->p_error = error;
 }
 
 static void fill_hit(const ClosestQuery *query, const Ray *ray, Hit *out)
@@ -115,7 +148,7 @@ static void fill_hit(const ClosestQuery *query, const Ray *ray, Hit *out)
     out->v = crossing->v;
     out->is_entering = crossing_is_entering(crossing, out->point.ng, ray->d);
     out->is_wall = crossing->leaf_change == 0;
-    fill_ties(query, out);
+    fill_ties(query, ray, out);
 }
 
 /* The view of the ray's origin, if there is one. */
@@ -170,6 +203,8 @@ bool trace_closest(TraceThread *thread, const Ray *ray, RayKind kind, Hit *out)
         box_index_closest(tracer->index, &rest, test_item, &query);
     if (query.count == 0)
         return false;
+    if (query.count > 1)
+        keep_place(&query);
     fill_hit(&query, ray, out);
     return true;
 }

@@ -79,13 +79,17 @@ InteriorStep interiors_pass(const Tracer *tracer, const Passage *passages, int c
             drop(after, entry);
         else
             step.ior_from = passage->interior->ior;
-        step.left[step.left_count++] = passage->interior;
     }
     for (int i = 0; i < count; i++)
         if (is_entered[i])
             push(after, passages[i].interior, passages[i].object);
     step.ior_to = innermost_ior(after);
     return step;
+}
+
+Rgb interiors_fade(const Interiors *inside, double t)
+{
+    return inside->count > 0 ? interior_fade(inside->in[inside->count - 1], t, false) : RGB_WHITE;
 }
 
 /* Find the leaf that lends its interior to a point inside a shape: the first child that holds

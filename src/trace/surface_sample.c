@@ -21,6 +21,8 @@ typedef struct Sampling {
     bool has_step;
     V3 mirror; /* direction of reflection, set if has_mirror */
     bool has_mirror;
+    bool has_fresnel;     /* some layer so far reflects as the interface does */
+    bool is_interface_in; /* one of a surface above: tied ones are the same interface */
 } Sampling;
 
 /* Pass the hit's surface and those tied to it. */
@@ -33,12 +35,11 @@ static const InteriorStep *step_of(Sampling *s)
     Passage passages[PASSAGES_MAX] = {{(uint32_t)(hit->object - scene->objects),
                                        hit->surface->interior, hit->is_entering, hit->is_wall}};
     for (int i = 0; i < hit->tie_count; i++) {
-        const Crossing *crossing = &hit->ties[i].crossing;
-        ShapePoint point;
-        shape_point(crossing, s->ray, &point);
+        const HitTie *tie = &hit->ties[i];
+        const Crossing *crossing = &tie->crossing;
         passages[i + 1] = (Passage){
-            hit->ties[i].object, scene->surfaces[crossing->leaf->surface].interior,
-            crossing_is_entering(crossing, point.ng, s->ray->d), crossing->leaf_change == 0};
+            tie->object, scene->surfaces[crossing->leaf->surface].interior,
+            crossing_is_entering(crossing, tie->point.ng, s->ray->d), crossing->leaf_change == 0};
     }
     s->step = interiors_pass(s->tracer, passages, 1 + hit->tie_count, s->interiors,
                              &s->out->inside_after);
@@ -101,6 +102,11 @@ static void sample_reflection(Sampling *s, SurfaceLayer *layer, float weight, Rg
     layer->reflect = RGB_BLACK;
     if (rgb_is_black(finish->reflection_max) && rgb_is_black(finish->reflection_min))
         return;
+    if (finish->is_fresnel) {
+        if (s->is_interface_in)
+            return;
+        s->has_fresnel = true;
+    }
     Rgb r = reflectivity(s, finish, layer->color);
     if (finish->conserves_energy)
         *filter = rgb_mul(*filter, rgb(1 - fminf(1, r.r), 1 - fminf(1, r.g), 1 - fminf(1, r.b)));
@@ -175,17 +181,18 @@ static void sample_surface(Sampling *s, const TextureChoice *choice)
     s->out->filter = sum;
 }
 
-/* Append the surfaces tied to the hit, as far as the ones above let them be seen. */
+/* Append the surfaces tied to the hit, as far as the ones above let them be seen.  Together they
+ * are one interface, from what the ray is in before all of them to what it is in behind: what
+ * Fresnel's law says of it counts once. */
 static void sample_ties(Sampling *s)
 {
     const Hit *hit = s->hit;
     for (int i = 0; i < hit->tie_count && !rgb_is_black(s->out->filter); i++) {
         const Crossing *crossing = &hit->ties[i].crossing;
         const Surface *surface = &s->tracer->scene->surfaces[crossing->leaf->surface];
-        ShapePoint point;
         TextureChoice choice;
-        shape_point(crossing, s->ray, &point);
-        bool is_inside = set_normals(s, &point);
+        bool is_inside = set_normals(s, &hit->ties[i].point);
+        s->is_interface_in = s->has_fresnel;
         texture_choose(surface, crossing->leaf, crossing->part, crossing->u, crossing->v, is_inside,
                        &choice);
         sample_surface(s, &choice);
@@ -236,8 +243,6 @@ static void sample_transmission(Sampling *s)
             set_total_reflection(s);
     }
     out->through = out->is_total_reflection ? RGB_WHITE : out->filter;
-    for (int i = 0; i < step->left_count; i++)
-        out->through = rgb_mul(out->through, interior_fade(step->left[i], s->hit->t, false));
 }
 
 void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit, const Interiors *interiors,
@@ -251,6 +256,7 @@ void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit, const I
     s.interiors = interiors;
     s.out = out;
     s.has_step = false;
+    s.has_fresnel = s.is_interface_in = false;
     out->at = hit->point;
     out->wo = v3_neg(ray->d);
     bool is_inside = set_normals(&s, &hit->point);

@@ -50,6 +50,7 @@ typedef enum RayKind {
 typedef struct HitTie {
     Crossing crossing;
     uint32_t object;
+    ShapePoint point;
 } HitTie;
 
 enum { HIT_TIES_MAX = 3 };
@@ -91,6 +92,10 @@ typedef struct Interiors {
  * ones too. */
 void interiors_at(const Tracer *tracer, V3 p, Interiors *out);
 
+/* Return what the innermost interior lets pass of light that goes t scene units in it.  Every leg
+ * of a ray or photon is absorbed so, whatever it ends at. */
+Rgb interiors_fade(const Interiors *inside, double t);
+
 /* One layer of a surface, evaluated.  Colours are pov-facts' symbols: see finish arithmetic in
  * man/pms.5. */
 typedef struct SurfaceLayer {
@@ -120,10 +125,7 @@ typedef struct SurfaceSample {
     bool is_total_reflection; /* then transmit_dir is the mirror direction */
     bool is_straight;         /* the ior does not change: the trace level does not count this (but
                                  level + 1 < max_trace_level must hold all the same) */
-    Rgb through;            /* throughput of the transmitted ray: filter (1 if total reflection) and
-                               absorption by the interior it leaves.  The language absorbs here and
-                               nowhere else: light that a surface inside an interior gives off or
-                               reflects is not absorbed on the way that led to that surface */
+    Rgb through;            /* throughput of the transmitted ray: filter, 1 if total reflection */
     V3 transmit_dir;        /* unit */
     double ior_ratio;       /* of this side to the far side */
     Interiors inside_after; /* of the transmitted ray */

@@ -96,8 +96,6 @@ enum { PASSAGES_MAX = 1 + HIT_TIES_MAX };
 /* What becomes of the interiors of a ray. */
 typedef struct InteriorStep {
     double ior_from, ior_to; /* equal: no bend */
-    int left_count;          /* interiors left */
-    const Interior *left[PASSAGES_MAX];
 } InteriorStep;
 
 /* Pass surfaces in one place, those left before those entered; `after` is set to what a ray in

@@ -131,7 +131,7 @@ static inline Rgb look_along(World *w, const Ray *ray, RayKind kind, const Inter
     if (!is_straight)
         level++;
     surface_sample(&w->thread, ray, &hit, inside, &s);
-    Rgb sum = RGB_BLACK;
+    Rgb sum = RGB_BLACK, faded = interiors_fade(inside, hit.t);
     for (int i = 0; i < s.layer_count; i++) {
         const SurfaceLayer *layer = &s.layers[i];
         Rgb own = rgb_mul(layer->color, layer->finish->ambient);
@@ -151,7 +151,7 @@ static inline Rgb look_along(World *w, const Ray *ray, RayKind kind, const Inter
         Rgb seen = look_along(w, &through, kind, &s.inside_after, level, next, s.is_straight);
         sum = rgb_add(sum, rgb_mul(s.through, seen));
     }
-    return sum;
+    return rgb_mul(faded, sum);
 }
 
 /* Look along +z through x = y = 0 from z = -10, as the measured pixels do. */
