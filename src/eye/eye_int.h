@@ -23,7 +23,7 @@ typedef struct Radiance {
 
 /* The sequences of points that the paths of a pixel draw from, and the number of the path. */
 typedef struct PathKeys {
-    uint64_t choice, bounce;
+    uint64_t choice, bounce, wave;
     uint32_t index;
 } PathKeys;
 

@@ -17,6 +17,7 @@
 
 #include "base/work.h"
 #include "math/sample.h"
+#include "math/spectrum.h"
 
 enum {
     PATH_SURFACES_MAX = 10000, /* a guard; few paths come near it */
@@ -160,9 +161,27 @@ static bool stops_shadow_rays(const EyeThread *eye, const Hit *hit)
     return !passes;
 }
 
-static void go_through(const EyeThread *eye, Path *path, const Hit *hit, const SurfaceSample *s,
-                       float p)
+/* Where light is dispersed, give the path a wavelength and evaluate the surface for that; returns
+ * false if it does not pass. */
+static bool choose_wave(EyeThread *eye, Path *path, const Hit *hit, SurfaceSample *out)
 {
+    Rgb color;
+    double u = sample_1d(eye->path.index, eye->path.wave);
+    path->inside.wavelength = (float)spectrum_choose(u, &color);
+    surface_sample(&eye->trace, &path->ray, hit, &path->inside, out);
+    weigh(path, color);
+    path->transmit *= rgb_grey(color);
+    return out->has_transmission;
+}
+
+static bool go_through(EyeThread *eye, Path *path, const Hit *hit, const SurfaceSample *s, float p)
+{
+    SurfaceSample wave;
+    if (s->spectrum > 0) {
+        if (!choose_wave(eye, path, hit, &wave))
+            return false;
+        s = &wave;
+    }
     path->ray = trace_ray_from(&s->at, s->transmit_dir);
     if (s->is_total_reflection) {
         take(path, RGB_WHITE, p);
@@ -178,6 +197,7 @@ static void go_through(const EyeThread *eye, Path *path, const Hit *hit, const S
     }
     if (path->diffuse == 0)
         path->kind = path->is_mirrored ? RAY_REFLECTED : RAY_REFRACTED;
+    return true;
 }
 
 static void reflect(Path *path, const SurfaceSample *s, const SurfaceLayer *layer, float p,
@@ -250,10 +270,8 @@ static bool leave(EyeThread *eye, Path *path, const Hit *hit, const SurfaceSampl
     if (!(odds.sum > 0))
         return false;
     double x = next_choice(eye, path) * (double)odds.sum;
-    if (x < (double)odds.transmit) {
-        go_through(eye, path, hit, s, odds.transmit / odds.sum);
-        return true;
-    }
+    if (x < (double)odds.transmit)
+        return go_through(eye, path, hit, s, odds.transmit / odds.sum);
     x -= (double)odds.transmit;
     for (int i = 0; i < s->layer_count; i++) {
         if (x < (double)odds.reflect[i]) {

@@ -6,6 +6,7 @@
 #include "eye/air_int.h"
 
 #include "base/work.h"
+#include "math/spectrum.h"
 
 /* Surfaces one path may pass: straight ones do not count as trace levels, so a stack of
  * perfectly clear sheets would have no end but this. */
@@ -180,6 +181,27 @@ static void add_air(EyeThread *eye, Path *path, double length, Radiance *out)
     path->weight *= rgb_max(veil.through);
 }
 
+/* Follow the bands of light that a surface disperses, each on its own. */
+static void split(EyeThread *eye, const Path *path, const Hit *hit, int bands, Radiance *out)
+{
+    for (int i = 0; i < bands; i++) {
+        SpectrumBand band = spectrum_band(i, bands);
+        SurfaceSample s;
+        Path part = *path;
+        part.inside.wavelength = (float)band.wavelength;
+        part.through = rgb_mul(path->through, band.color);
+        part.transmit = path->transmit * rgb_grey(band.color);
+        surface_sample(&eye->trace, &path->ray, hit, &part.inside, &s);
+        if (!s.has_transmission || !go_on(eye, &part, &s))
+            continue;
+        Radiance seen;
+        radiance(eye, &part, &seen, NULL);
+        for (int k = 0; k < PART_COUNT; k++)
+            out->part[k] = rgb_add(out->part[k], seen.part[k]);
+        out->transmit += seen.transmit;
+    }
+}
+
 /* Follow one path; the caller has made sure that it may be traced. */
 static void radiance(EyeThread *eye, Path *path, Radiance *out, EyeSample *first)
 {
@@ -207,6 +229,10 @@ static void radiance(EyeThread *eye, Path *path, Radiance *out, EyeSample *first
             describe_first(&hit, &s, first);
         add_surface(eye, path, &s, out);
         bool is_followed = s.has_transmission && plan_has(eye->plan, FEATURE_REFRACTION);
+        if (is_followed && s.spectrum > 0) {
+            split(eye, path, &hit, s.spectrum, out);
+            return;
+        }
         if (!is_followed || !go_on(eye, path, &s))
             return;
     }

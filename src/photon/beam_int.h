@@ -22,7 +22,7 @@ typedef struct Beam {
     int side;              /* cells a side */
     float *cumulative;     /* of the weights of cells, row by row; side * side, ends with 1 */
     uint16_t guide[BEAM_GUIDES + 1]; /* the cell in which each part of the weight begins */
-    uint64_t square_key, shift_key, area_key, choice_key; /* of its sequences of points */
+    uint64_t square_key, shift_key, area_key, choice_key, wave_key; /* of its point sequences */
     double flux;     /* onto the target, summed RGB, estimated by a pilot */
     double filled;   /* mean weight of the cells over that of the best */
     uint64_t budget; /* photons to send */

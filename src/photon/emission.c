@@ -148,6 +148,7 @@ static void set_keys(Emission *emission)
         beam->shift_key = rng_u64(&keys);
         beam->area_key = rng_u64(&keys);
         beam->choice_key = rng_u64(&keys);
+        beam->wave_key = rng_u64(&keys);
     }
 }
 

@@ -3,6 +3,7 @@
 #include "photon/walk_int.h"
 
 #include "base/mem.h"
+#include "math/spectrum.h"
 
 /* Surfaces one path may pass: straight ones do not count as levels. */
 enum { PATH_SURFACES_MAX = 10000 };
@@ -25,7 +26,8 @@ typedef struct Walk {
     bool is_diffuse;  /* was reflected diffusely */
     bool is_straight; /* the last surface did not bend it */
     bool has_chosen;  /* thrown the dice before */
-    uint64_t index;   /* of the photon */
+    bool is_scout;
+    uint64_t index; /* of the photon */
     Rng *rng;
 } Walk;
 
@@ -218,16 +220,45 @@ static void bounce_diffusely(Walk *walk, const SurfaceSample *s)
     leave(walk, s, warp_to_frame(cosine_direction(walk->rng), s->ng), false);
 }
 
+/* Go through a surface with a share of the light. */
+static void transmit(Walk *walk, const SurfaceSample *s, Rgb share)
+{
+    walk->weight = rgb_mul(walk->weight, share);
+    if (!s->is_total_reflection)
+        walk->inside = s->inside_after;
+    leave(walk, s, s->transmit_dir, s->is_straight && !s->is_total_reflection);
+    walk->is_specular = true;
+}
+
+/* Choose the wavelength that the photon has from here on, stratified over those of a beam. */
+static double next_wave(Walk *walk)
+{
+    return walk->is_scout ? rng_double(walk->rng)
+                          : sample_1d((uint32_t)walk->index, walk->beam->wave_key);
+}
+
+/* Go through a surface that disperses; returns false when the wavelength chosen does not pass. */
+static bool disperse(Walk *walk, const Hit *hit, double p_transmit)
+{
+    Rgb color;
+    SurfaceSample s;
+    walk->inside.wavelength = (float)spectrum_choose(next_wave(walk), &color);
+    surface_sample(walk->thread, &walk->ray, hit, &walk->inside, &s);
+    if (!s.has_transmission)
+        return false;
+    transmit(walk, &s, rgb_scale(rgb_mul(color, not_negative(s.through)), (float)(1 / p_transmit)));
+    return true;
+}
+
 /* Follow the branch the dice chose; returns false when the path ends here. */
-static bool follow(Walk *walk, const SurfaceSample *s, const Roulette *r, Branch branch)
+static bool follow(Walk *walk, const Hit *hit, const SurfaceSample *s, const Roulette *r,
+                   Branch branch)
 {
     switch (branch) {
     case BRANCH_TRANSMIT:
-        walk->weight = rgb_mul(walk->weight, rgb_scale(r->transmit, (float)(1 / r->p_transmit)));
-        if (!s->is_total_reflection)
-            walk->inside = s->inside_after;
-        leave(walk, s, s->transmit_dir, s->is_straight && !s->is_total_reflection);
-        walk->is_specular = true;
+        if (s->spectrum > 0)
+            return disperse(walk, hit, r->p_transmit);
+        transmit(walk, s, rgb_scale(r->transmit, (float)(1 / r->p_transmit)));
         return true;
     case BRANCH_REFLECT:
         walk->weight = rgb_mul(walk->weight, rgb_scale(r->reflect, (float)(1 / r->p_reflect)));
@@ -309,7 +340,7 @@ static bool meet_surface(Walk *walk, const Hit *hit, const SurfaceSample *s, flo
     }
     Roulette roulette;
     set_roulette(walk, s, diffuse, &roulette);
-    if (!follow(walk, s, &roulette, spin(walk, &roulette))) {
+    if (!follow(walk, hit, s, &roulette, spin(walk, &roulette))) {
         result->end = PATH_ABSORBED;
         walk->weight = RGB_BLACK;
         return false;
@@ -361,6 +392,7 @@ Rgb photon_scout(TraceThread *thread, const WalkRules *rules, const Beam *beam,
                  .start = start,
                  .flux_length = -1,
                  .has_chosen = true,
+                 .is_scout = true,
                  .rng = rng};
     begin(&walk);
     Rgb found = RGB_BLACK;
@@ -387,7 +419,7 @@ Rgb photon_scout(TraceThread *thread, const WalkRules *rules, const Beam *beam,
             *at = s.at.p;
         }
         if (is_there || rules->map == MAP_CAUSTIC || !rgb_is_black(diffuse) ||
-            !follow(&walk, &s, &roulette, spin(&walk, &roulette)) || is_over_limit(&walk))
+            !follow(&walk, &hit, &s, &roulette, spin(&walk, &roulette)) || is_over_limit(&walk))
             break;
     }
     arena_reset(thread->scratch);

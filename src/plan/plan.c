@@ -25,6 +25,7 @@ enum { GLOBAL_PHOTONS_DEFAULT = 200000 };
 /* The first surface or light that shows each trait, and how many do. */
 typedef struct Evidence {
     const Surface *transmitting, *reflecting, *absorbing, *highlighted, *filtering, *target;
+    const Surface *dispersing;
     const Surface *blocking; /* casts a shadow */
     const Light *light;      /* with any colour */
     const Light *shadowing;  /* not shadowless */
@@ -137,6 +138,8 @@ static void look_at_surface(const Surface *s, Evidence *found)
     first_surface(&found->transmitting, s, s->may_transmit);
     first_surface(&found->reflecting, s, s->may_reflect);
     first_surface(&found->absorbing, s, s->may_transmit && s->interior->fade_distance > 0);
+    first_surface(&found->dispersing, s,
+                  s->may_transmit && s->interior->dispersion != DISPERSION_NONE);
     first_surface(&found->highlighted, s, surface_has_highlights(s));
     first_surface(&found->blocking, s, !s->no_shadow);
     first_surface(&found->filtering, s, s->may_transmit && !s->no_shadow);
@@ -323,6 +326,22 @@ static void plan_lights(const PlanOptions *options, const Evidence *found, Plan 
                 found->area ? "area_light" : "no area_light that casts shadows");
 }
 
+static void plan_dispersion(const PlanOptions *options, const Evidence *found, PlanRow *row)
+{
+    const Surface *s = found->dispersing;
+    if (row_below(row, options->quality, QUALITY_REFRACTION))
+        return;
+    if (!s)
+        row_set(row, false, SPAN_NONE, "no transparent object has dispersion");
+    else if (s->interior->dispersion == DISPERSION_RATIO)
+        row_set(row, true, s->interior->span, "an interior with dispersion %g, seen in %d bands",
+                s->interior->coefficients[0], s->interior->dispersion_samples);
+    else
+        row_set(row, true, s->interior->span, "an interior with %s in pms{}, seen in %d bands",
+                s->interior->dispersion == DISPERSION_CAUCHY ? "cauchy" : "sellmeier",
+                s->interior->dispersion_samples);
+}
+
 static void plan_surfaces(const PlanOptions *options, const Evidence *found, PlanRow *rows)
 {
     const Surface *s = found->reflecting;
@@ -335,6 +354,7 @@ static void plan_surfaces(const PlanOptions *options, const Evidence *found, Pla
         row_set(&rows[FEATURE_REFRACTION], s, s ? s->span : SPAN_NONE, "%s",
                 s ? "a pigment with filter or transmit" : "no pigment has filter or transmit");
 
+    plan_dispersion(options, found, &rows[FEATURE_DISPERSION]);
     s = found->absorbing;
     row_set(&rows[FEATURE_ABSORPTION], s, s ? s->span : SPAN_NONE, "%s",
             s ? "an interior with fade_distance" : "no transparent object has fade_distance");

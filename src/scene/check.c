@@ -30,7 +30,7 @@ static bool texture_conserves(const Texture *texture)
 /* Fake caustics brighten what passes; a mirror that conserves energy takes its part of it. */
 static bool only_filters(const Surface *s)
 {
-    return s->interior->ior == 1 && s->interior->caustics == 0 &&
+    return !interior_bends(s->interior) && s->interior->caustics == 0 &&
            !(s->may_reflect && surface_has(s, texture_conserves));
 }
 
@@ -111,7 +111,7 @@ static bool mark_specular_targets(Scene *scene)
         Surface *s = &scene->surfaces[i];
         bool reflects = s->may_reflect && s->photons.reflection != TRI_OFF;
         bool refracts = s->may_transmit && s->photons.refraction != TRI_OFF &&
-                        s->interior->ior != 1 && !s->photons.is_pass_through;
+                        interior_bends(s->interior) && !s->photons.is_pass_through;
         if (!has_bounds(scene, s) || !(reflects || refracts))
             continue;
         s->is_target = any = true;

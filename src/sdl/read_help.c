@@ -16,6 +16,13 @@ const char *read_word(Parser *p, const Token *token)
     return word;
 }
 
+bool read_is_word(const Token *token, const char *word)
+{
+    size_t length = strlen(word);
+    return token->span.source && token->span.end - token->span.begin == length &&
+           memcmp(token->span.source->text + token->span.begin, word, length) == 0;
+}
+
 Token read_open(Parser *p)
 {
     Token word = parse_next(p);

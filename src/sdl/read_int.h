@@ -17,6 +17,9 @@ bool read_close(Parser *p);
 /* Return a terminated copy of the word at a token, without backquotes. */
 const char *read_word(Parser *p, const Token *token);
 
+/* Return true if a token is this word; words of pms{} are not reserved. */
+bool read_is_word(const Token *token, const char *word);
+
 /* Read a float that must be finite; `what` names it in messages; *span gets its place. */
 double read_finite(Parser *p, const char *what, Span *span_or_null);
 
@@ -93,6 +96,9 @@ const Material *read_material(Parser *p);
 
 /* Read an index of refraction; one that cannot be becomes 1 with a warning. */
 double read_ior(Parser *p);
+
+/* pms{} of an interior. */
+void read_pms_interior(Parser *p, Interior *interior);
 
 const ColorMap *read_color_map(Parser *p);
 

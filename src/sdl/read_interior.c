@@ -1,6 +1,8 @@
 /* interior and material.  SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/read_int.h"
 
+enum { SAMPLES_MAX = 1000000 };
+
 double read_ior(Parser *p)
 {
     Span span;
@@ -11,13 +13,35 @@ double read_ior(Parser *p)
     return 1;
 }
 
+/* The last of ior, dispersion and a formula holds. */
+static void read_dispersion(Parser *p, Interior *interior)
+{
+    Span span;
+    parse_next(p);
+    double ratio = read_finite(p, "dispersion", &span);
+    if (!(ratio > 0)) {
+        parse_warn(p, WARN_VALUE, span, "dispersion wants a number above 0, got %g: 1 is used",
+                   ratio);
+        ratio = 1;
+    }
+    interior->dispersion = ratio == 1 ? DISPERSION_NONE : DISPERSION_RATIO;
+    interior->coefficients[0] = ratio;
+}
+
+static void read_interior_ior(Parser *p, Interior *interior)
+{
+    parse_next(p);
+    interior->ior = read_ior(p);
+    if (interior->dispersion != DISPERSION_RATIO)
+        interior->dispersion = DISPERSION_NONE;
+}
+
 static void read_interior_item(Parser *p, Interior *interior)
 {
     Token head = *parse_peek(p);
     switch (head.kind) {
     case KW_IOR:
-        parse_next(p);
-        interior->ior = read_ior(p);
+        read_interior_ior(p, interior);
         break;
     case KW_CAUSTICS:
         parse_next(p);
@@ -37,14 +61,20 @@ static void read_interior_item(Parser *p, Interior *interior)
         interior->fade_color = read_rgb(p, "fade_color");
         break;
     case KW_DISPERSION:
+        read_dispersion(p, interior);
+        break;
     case KW_DISPERSION_SAMPLES:
-        parse_fail_not_yet(p, head.span, "dispersion");
+        parse_next(p);
+        interior->dispersion_samples = (int)parse_int(p, "dispersion_samples", 2, SAMPLES_MAX);
+        break;
     case KW_MEDIA:
         interior->media = (const Medium *const *)read_append(
             p, (const void *const *)interior->media, &interior->media_count, read_media(p));
         break;
     default:
-        parse_fail_here(p, "in an interior");
+        if (!read_is_word(&head, "pms"))
+            parse_fail_here(p, "in an interior");
+        read_pms_interior(p, interior);
     }
 }
 

@@ -1,8 +1,6 @@
 /* global_settings, with photons{} and pms{}.  SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/read_int.h"
 
-#include <string.h>
-
 enum { TRACE_LEVEL_MAX = 256, GATHER_MAX = 1000000 };
 
 /* --- photons
@@ -127,20 +125,13 @@ void read_global_photons(Parser *p, PhotonSettings *photons)
 /* --- pms: what the common language has no word for
  * ------------------------------------------------------ */
 
-static bool is_word(const Token *token, const char *word)
-{
-    size_t length = strlen(word);
-    return token->span.source && token->span.end - token->span.begin == length &&
-           memcmp(token->span.source->text + token->span.begin, word, length) == 0;
-}
-
 /* Take one of a list of words and return its number. */
 static int read_choice(Parser *p, const char *what, const char *const words[], int count,
                        const char *list)
 {
     Token token = parse_next(p);
     for (int i = 0; i < count; i++)
-        if (is_word(&token, words[i]))
+        if (read_is_word(&token, words[i]))
             return i;
     parse_fail(p, token.span, "%s wants one of %s", what, list);
 }
@@ -165,13 +156,13 @@ void read_pms_settings(Parser *p, PmsSettings *pms)
     pms->span = head.span;
     while (!read_close(p)) {
         Token word = parse_next(p);
-        if (is_word(&word, "gi"))
+        if (read_is_word(&word, "gi"))
             pms->has_indirect = parse_flag(p);
-        else if (is_word(&word, "global_photons"))
+        else if (read_is_word(&word, "global_photons"))
             pms->global_count = parse_int(p, "global_photons", 1, 2000000000);
-        else if (is_word(&word, "kernel"))
+        else if (read_is_word(&word, "kernel"))
             read_kernel(p, pms);
-        else if (is_word(&word, "gather"))
+        else if (read_is_word(&word, "gather"))
             read_gather_shape(p, pms);
         else
             parse_fail(p, word.span,
@@ -266,7 +257,7 @@ static void read_setting(Parser *p, SceneSettings *settings)
     case KW_SUBSURFACE:
         parse_fail_not_yet(p, head.span, "subsurface");
     default:
-        if (!is_word(&head, "pms"))
+        if (!read_is_word(&head, "pms"))
             parse_fail_here(p, "in global_settings");
         read_pms_settings(p, &settings->pms);
     }

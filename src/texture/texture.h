@@ -114,18 +114,30 @@ typedef struct Texture {
 
 typedef struct Medium Medium; /* texture/media.h */
 
+/* How the index of refraction depends on the wavelength. */
+typedef enum DispersionKind {
+    DISPERSION_NONE,
+    DISPERSION_RATIO,    /* a power of the wavelength; coefficient: index of violet over red */
+    DISPERSION_CAUCHY,   /* A + B/w^2 + C/w^4 */
+    DISPERSION_SELLMEIER /* n^2 = 1 + the sum of Bi w^2 / (w^2 - Ci): B1 B2 B3 C1 C2 C3 */
+} DispersionKind;
+
 typedef struct Interior {
     Span span;
-    double ior;             /* 1: as outside */
+    double ior;      /* 1: as outside; of formulas at the helium d line */
     double fade_distance, fade_power; /* scene units; distance 0: no absorption */
     Rgb fade_color;
     float caustics;
     const Medium *const *media; /* in written order; they count in hollow objects only */
     int media_count;
     bool is_hollow; /* of hollow objects: set when the scene is built */
+    int priority;    /* where interiors overlap the highest counts; of equals the one entered last */
+    DispersionKind dispersion;
+    int dispersion_samples; /* wavelengths that the eye sees through it; at least 2 */
+    double coefficients[6]; /* of the formulas, w in micrometres */
 } Interior;
 
-#define INTERIOR_DEFAULT ((Interior){.ior = 1})
+#define INTERIOR_DEFAULT ((Interior){.ior = 1, .dispersion_samples = 7})
 
 /* Return the pigment's colour at a world point.  Pigments in a list are evaluated at the point
  * the outer pattern sees.  Never fails.  Any thread. */
@@ -146,6 +158,18 @@ bool texture_may_transmit(const Texture *texture);
 
 /* Return true if any finish of the texture reflects. */
 bool texture_may_reflect(const Texture *texture);
+
+/* Return the index of refraction at a wavelength in nm; 0: of light as a whole. */
+double interior_ior(const Interior *interior, double wavelength);
+
+/* Set the ior to a formula's; false, without a change, if the formula makes no sense for light. */
+bool interior_set_formula(Interior *interior, DispersionKind kind, const double coefficients[6]);
+
+/* Return whether light may be bent where an interior begins in the open. */
+static inline bool interior_bends(const Interior *interior)
+{
+    return interior->ior != 1 || interior->dispersion != DISPERSION_NONE;
+}
 
 /* Return the transmittance of `distance` scene units inside an interior.
  *

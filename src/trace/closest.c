@@ -15,7 +15,8 @@ enum { TIES_MAX = 1 + HIT_TIES_MAX };
 #define TIE_ERRORS 16.0
 #define TIE_LINKS 4.0
 
-/* But no two are that are further apart than this part of t, whatever their errors. */
+/* But no two are that are further apart than this part of t and of where the ray starts, whatever
+ * their errors. */
 #define TIE_CAP 0x1p-30
 
 typedef struct Candidate {
@@ -30,6 +31,8 @@ typedef struct ClosestQuery {
     const uint32_t *index_objects;
     RayKind kind;
     double t, slack; /* of the nearest so far */
+    double limit;    /* its place reaches no further */
+    double start;    /* the ray's origin, largest coordinate */
     int count;
     Candidate found[TIES_MAX]; /* all that may be in its place, by object */
 } ClosestQuery;
@@ -42,12 +45,6 @@ static void drop_far(ClosestQuery *query, double end)
         if (query->found[i].crossing.t - query->found[i].slack <= end)
             query->found[kept++] = query->found[i];
     query->count = kept;
-}
-
-/* Return how far the place of the nearest hit may reach. */
-static double place_limit(const ClosestQuery *query)
-{
-    return query->t + TIE_LINKS * query->slack;
 }
 
 /* Keep what is in the place of the nearest hit: linked to it by slacks that overlap. */
@@ -81,7 +78,7 @@ static void insert(ClosestQuery *query, const Crossing *crossing, double slack, 
     query->found[at].object = object;
 }
 
-static void test_object(ClosestQuery *query, uint32_t object, Ray *ray)
+static inline void test_object(ClosestQuery *query, uint32_t object, Ray *ray)
 {
     const TracedObject *traced = &query->objects[object];
     Crossing crossing;
@@ -89,24 +86,25 @@ static void test_object(ClosestQuery *query, uint32_t object, Ray *ray)
         !shape_closest(traced->shape, ray, query->thread->shapes, &crossing))
         return;
     double t = crossing.t, slack = TIE_ERRORS * crossing.t_error;
-    if (slack > t * TIE_CAP)
-        slack = t * TIE_CAP;
-    if (query->count == 0 || t + TIE_LINKS * slack < query->t - query->slack) {
-        query->count = 0;
-        query->t = t;
-        query->slack = slack;
-    } else if (t - slack > place_limit(query)) {
+    if (slack > (t + query->start) * TIE_CAP)
+        slack = (t + query->start) * TIE_CAP;
+    bool is_first = query->count == 0 || t + TIE_LINKS * slack < query->t - query->slack;
+    if (!is_first && t - slack > query->limit)
         return;
-    } else if (t < query->t) {
+    if (is_first || t < query->t) {
         query->t = t;
         query->slack = slack;
-        drop_far(query, place_limit(query));
+        query->limit = t + TIE_LINKS * slack;
+        if (is_first)
+            query->count = 0;
+        else
+            drop_far(query, query->limit);
+        /* Far enough to see one in the place whose slack is no larger, and the same t again. */
+        double end = query->limit + slack + t * 0x1p-51;
+        if (end < ray->tmax)
+            ray->tmax = end;
     }
     insert(query, &crossing, slack, object);
-    /* Far enough to see a hit in the place whose slack is no larger, and the same t again. */
-    double end = query->t * (1 + 0x1p-51) + (TIE_LINKS + 1) * query->slack;
-    if (end < ray->tmax)
-        ray->tmax = end;
 }
 
 static bool test_item(void *ctx, uint32_t item, Ray *ray)
@@ -195,6 +193,7 @@ bool trace_closest(TraceThread *thread, const Ray *ray, RayKind kind, Hit *out)
     query.index_objects = tracer->index_objects;
     query.kind = kind;
     query.count = 0;
+    query.start = v3_max_abs(ray->o);
     Ray rest = *ray;
     for (uint32_t i = 0; i < tracer->unbounded_count; i++)
         test_object(&query, tracer->unbounded[i], &rest);

@@ -3,8 +3,15 @@
  * The language pairs entering and leaving by object.  For objects made of closed solids the
  * normal says which it is, so that a missed entry (a light or an eye on the surface, surfaces
  * that coincide) is mended at the exit; for open ones, whose normals say little, a ray enters
- * what it is not in and leaves what it is in.  SPDX-License-Identifier: Apache-2.0 */
+ * what it is not in and leaves what it is in.
+ *
+ * Where interiors overlap, one of the highest priority counts; of these the one entered last, as
+ * in the language.  So a ray meets one interface between two media, wherever in the overlap it is.
+ * SPDX-License-Identifier: Apache-2.0 */
 #include "trace/trace_int.h"
+
+#include "math/eps.h"
+#include "math/spectrum.h"
 
 /* Find the innermost entry of an object, preferring the same interior; -1: none. */
 static int entry_of(const Interiors *list, uint32_t object, const Interior *interior)
@@ -21,23 +28,10 @@ static int entry_of(const Interiors *list, uint32_t object, const Interior *inte
     return found;
 }
 
-static double innermost_ior(const Interiors *list)
+/* What a ray is in; NULL: the open. */
+static const Interior *innermost(const Interiors *list)
 {
-    return list->count > 0 ? list->in[list->count - 1]->ior : 1;
-}
-
-/* When the list is full the outermost entry goes. */
-static void push(Interiors *list, const Interior *interior, uint32_t object)
-{
-    if (list->count == INTERIORS_MAX) {
-        list->count--;
-        for (int i = 0; i < list->count; i++) {
-            list->in[i] = list->in[i + 1];
-            list->object[i] = list->object[i + 1];
-        }
-    }
-    list->in[list->count] = interior;
-    list->object[list->count++] = object;
+    return list->count > 0 ? list->in[list->count - 1] : NULL;
 }
 
 static void drop(Interiors *list, int entry)
@@ -49,47 +43,101 @@ static void drop(Interiors *list, int entry)
     }
 }
 
+/* Add an entry behind those of its priority.  When the list is full the outermost goes. */
+static void push(Interiors *list, const Interior *interior, uint32_t object)
+{
+    if (list->count == INTERIORS_MAX)
+        drop(list, 0);
+    int at = list->count++;
+    for (; at > 0 && list->in[at - 1]->priority > interior->priority; at--) {
+        list->in[at] = list->in[at - 1];
+        list->object[at] = list->object[at - 1];
+    }
+    list->in[at] = interior;
+    list->object[at] = object;
+}
+
 /* Copy the used part only. */
 static void copy(Interiors *to, const Interiors *from)
 {
     to->count = from->count;
+    to->wavelength = from->wavelength;
     for (int i = 0; i < from->count; i++) {
         to->in[i] = from->in[i];
         to->object[i] = from->object[i];
     }
 }
 
+static double ior_of(const Interior *interior, double wavelength)
+{
+    return interior ? interior_ior(interior, wavelength) : 1;
+}
+
+static int bands_of(const Interior *interior)
+{
+    bool disperses = interior && interior->dispersion != DISPERSION_NONE;
+    return disperses ? interior->dispersion_samples : 0;
+}
+
+static double ratio_of(const Interior *from, const Interior *to, double wavelength)
+{
+    return ior_of(from, wavelength) / ior_of(to, wavelength);
+}
+
+/* Set what depends on the wavelength. */
+static void disperse(const Interior *from, const Interior *to, double wavelength,
+                     InteriorStep *step)
+{
+    int from_bands = bands_of(from), to_bands = bands_of(to);
+    int bands = from_bands > to_bands ? from_bands : to_bands;
+    if (bands == 0 || from == to)
+        return;
+    if (wavelength > 0) {
+        step->ior_from = ior_of(from, wavelength);
+        step->ior_to = ior_of(to, wavelength);
+        return;
+    }
+    double first = ratio_of(from, to, SPECTRUM_FIRST), last = ratio_of(from, to, SPECTRUM_LAST);
+    if (fabs(first - last) > EPS_LANGUAGE * last)
+        step->spectrum = bands;
+}
+
+/* Leave what a passage leaves; returns whether it enters something instead.  *from: what the ray
+ * is in; if it was in what it leaves without having entered it, that. */
+static bool leave(const Tracer *tracer, const Passage *passage, Interiors *list,
+                  const Interior **from)
+{
+    bool is_closed = tracer->objects[passage->object].is_closed;
+    if (is_closed && passage->is_wall)
+        return false;
+    if (is_closed && passage->is_entering)
+        return true;
+    int entry = entry_of(list, passage->object, passage->interior);
+    if (entry >= 0)
+        drop(list, entry);
+    else if (!is_closed)
+        return true;
+    else if (!*from || (*from)->priority <= passage->interior->priority)
+        *from = passage->interior;
+    return false;
+}
+
 InteriorStep interiors_pass(const Tracer *tracer, const Passage *passages, int count,
                             const Interiors *before, Interiors *after)
 {
-    InteriorStep step = {.ior_from = innermost_ior(before)};
+    const Interior *from = innermost(before);
     bool is_entered[PASSAGES_MAX];
     copy(after, before);
-    for (int i = 0; i < count; i++) {
-        const Passage *passage = &passages[i];
-        bool is_closed = tracer->objects[passage->object].is_closed;
-        is_entered[i] = false;
-        if (is_closed && passage->is_wall)
-            continue;
-        int entry = entry_of(after, passage->object, passage->interior);
-        is_entered[i] = is_closed ? passage->is_entering : entry < 0;
-        if (is_entered[i])
-            continue;
-        if (entry >= 0)
-            drop(after, entry);
-        else
-            step.ior_from = passage->interior->ior;
-    }
+    for (int i = 0; i < count; i++)
+        is_entered[i] = leave(tracer, &passages[i], after, &from);
     for (int i = 0; i < count; i++)
         if (is_entered[i])
             push(after, passages[i].interior, passages[i].object);
-    step.ior_to = innermost_ior(after);
+    const Interior *to = innermost(after);
+    InteriorStep step = {.ior_from = from ? from->ior : 1, .ior_to = to ? to->ior : 1};
+    if (tracer->has_dispersion)
+        disperse(from, to, (double)before->wavelength, &step);
     return step;
-}
-
-Rgb interiors_fade(const Interiors *inside, double t)
-{
-    return inside->count > 0 ? interior_fade(inside->in[inside->count - 1], t, false) : RGB_WHITE;
 }
 
 /* Find the leaf that lends its interior to a point inside a shape: the first child that holds
@@ -119,27 +167,33 @@ static double volume(const Object *object)
     return size.x * size.y * size.z;
 }
 
+/* Does one of this interior and volume lie around another one? */
+static bool is_around(const Interior *a, double a_volume, const Interior *b, double b_volume)
+{
+    return a->priority != b->priority ? a->priority < b->priority : a_volume > b_volume;
+}
+
 void interiors_at(const Tracer *tracer, V3 p, Interiors *out)
 {
     double volumes[INTERIORS_MAX];
     out->count = 0;
+    out->wavelength = 0;
     for (uint32_t k = 0; k < tracer->clear_count && out->count < INTERIORS_MAX; k++) {
         uint32_t i = tracer->clear[k];
         const Object *object = &tracer->scene->objects[i];
         if (!shape_is_inside(object->shape, p))
             continue;
-        double size = volume(object);
-        int at = out->count;
-        while (at > 0 && volumes[at - 1] < size)
-            at--;
-        for (int j = out->count++; j > at; j--) {
-            volumes[j] = volumes[j - 1];
-            out->in[j] = out->in[j - 1];
-            out->object[j] = out->object[j - 1];
-        }
         const Shape *leaf = leaf_around(object->shape, p);
+        const Interior *interior = tracer->scene->surfaces[leaf->surface].interior;
+        double size = volume(object);
+        int at = out->count++;
+        for (; at > 0 && is_around(interior, size, out->in[at - 1], volumes[at - 1]); at--) {
+            volumes[at] = volumes[at - 1];
+            out->in[at] = out->in[at - 1];
+            out->object[at] = out->object[at - 1];
+        }
         volumes[at] = size;
-        out->in[at] = tracer->scene->surfaces[leaf->surface].interior;
+        out->in[at] = interior;
         out->object[at] = i;
     }
 }

@@ -7,6 +7,7 @@
 #include "trace/trace_int.h"
 
 #include "math/eps.h"
+#include "math/spectrum.h"
 
 /* What the steps share. */
 typedef struct Sampling {
@@ -21,8 +22,7 @@ typedef struct Sampling {
     bool has_step;
     V3 mirror; /* direction of reflection, set if has_mirror */
     bool has_mirror;
-    bool has_fresnel;     /* some layer so far reflects as the interface does */
-    bool is_interface_in; /* one of a surface above: tied ones are the same interface */
+    bool is_interface_in; /* a surface above reflects as the interface does: tied ones are it too */
 } Sampling;
 
 /* Pass the hit's surface and those tied to it. */
@@ -37,9 +37,9 @@ static const InteriorStep *step_of(Sampling *s)
     for (int i = 0; i < hit->tie_count; i++) {
         const HitTie *tie = &hit->ties[i];
         const Crossing *crossing = &tie->crossing;
-        passages[i + 1] = (Passage){
-            tie->object, scene->surfaces[crossing->leaf->surface].interior,
-            crossing_is_entering(crossing, tie->point.ng, s->ray->d), crossing->leaf_change == 0};
+        passages[i + 1] = (Passage){tie->object, scene->surfaces[crossing->leaf->surface].interior,
+                                    crossing_is_entering(crossing, tie->point.ng, s->ray->d),
+                                    crossing->leaf_change == 0};
     }
     s->step = interiors_pass(s->tracer, passages, 1 + hit->tie_count, s->interiors,
                              &s->out->inside_after);
@@ -66,6 +66,8 @@ static V3 mirror_of(Sampling *s)
 static double fresnel(double cosine, double ior)
 {
     double g2 = ior * ior + cosine * cosine - 1;
+    if (ior == 1)
+        return 0;
     if (!(g2 > 0))
         return 1;
     double g = sqrt(g2), a = (g - cosine) / (g + cosine);
@@ -102,11 +104,8 @@ static void sample_reflection(Sampling *s, SurfaceLayer *layer, float weight, Rg
     layer->reflect = RGB_BLACK;
     if (rgb_is_black(finish->reflection_max) && rgb_is_black(finish->reflection_min))
         return;
-    if (finish->is_fresnel) {
-        if (s->is_interface_in)
-            return;
-        s->has_fresnel = true;
-    }
+    if (s->is_interface_in && finish->is_fresnel)
+        return;
     Rgb r = reflectivity(s, finish, layer->color);
     if (finish->conserves_energy)
         *filter = rgb_mul(*filter, rgb(1 - fminf(1, r.r), 1 - fminf(1, r.g), 1 - fminf(1, r.b)));
@@ -181,6 +180,17 @@ static void sample_surface(Sampling *s, const TextureChoice *choice)
     s->out->filter = sum;
 }
 
+/* Does a layer so far reflect by Fresnel's law? */
+static bool has_fresnel(const SurfaceSample *s)
+{
+    for (int i = 0; i < s->layer_count; i++) {
+        const Finish *finish = s->layers[i].finish;
+        if (finish->is_fresnel && !rgb_is_black(finish->reflection_max))
+            return true;
+    }
+    return false;
+}
+
 /* Append the surfaces tied to the hit, as far as the ones above let them be seen.  Together they
  * are one interface, from what the ray is in before all of them to what it is in behind: what
  * Fresnel's law says of it counts once. */
@@ -192,7 +202,7 @@ static void sample_ties(Sampling *s)
         const Surface *surface = &s->tracer->scene->surfaces[crossing->leaf->surface];
         TextureChoice choice;
         bool is_inside = set_normals(s, &hit->ties[i].point);
-        s->is_interface_in = s->has_fresnel;
+        s->is_interface_in = has_fresnel(s->out);
         texture_choose(surface, crossing->leaf, crossing->part, crossing->u, crossing->v, is_inside,
                        &choice);
         sample_surface(s, &choice);
@@ -245,6 +255,49 @@ static void sample_transmission(Sampling *s)
     out->through = out->is_total_reflection ? RGB_WHITE : out->filter;
 }
 
+/* Add what a wavelength's sample sends on, of which there is `color`, to the means. */
+static void add_wave(const SurfaceSample *one, Rgb color, SurfaceSample *out)
+{
+    if (one->has_transmission) {
+        out->has_transmission = true;
+        out->filter = rgb_add(out->filter, rgb_mul(color, one->through));
+    }
+    for (int i = 0; i < out->layer_count && i < one->layer_count; i++) {
+        const SurfaceLayer *layer = &one->layers[i];
+        if (rgb_is_black(layer->reflect))
+            continue;
+        out->layers[i].reflect = rgb_add(out->layers[i].reflect, rgb_mul(color, layer->reflect));
+        out->layers[i].reflect_dir = layer->reflect_dir;
+    }
+}
+
+/* Make of the sample of light as a whole the mean over its wavelengths. */
+static void disperse(TraceThread *thread, Sampling *s)
+{
+    SurfaceSample *out = s->out;
+    if (!s->hit->surface->may_transmit || !(s->has_step || out->has_transmission))
+        return;
+    int bands = step_of(s)->spectrum;
+    if (bands == 0)
+        return;
+    if (!out->has_transmission) /* others may pass: let it be as complete as they are */
+        sample_transmission(s);
+    out->has_transmission = out->is_total_reflection = out->is_straight = false;
+    out->filter = RGB_BLACK;
+    for (int i = 0; i < out->layer_count; i++)
+        out->layers[i].reflect = RGB_BLACK;
+    Interiors interiors = *s->interiors;
+    for (int i = 0; i < bands; i++) {
+        SpectrumBand band = spectrum_band(i, bands);
+        SurfaceSample one;
+        interiors.wavelength = (float)band.wavelength;
+        surface_sample(thread, s->ray, s->hit, &interiors, &one);
+        add_wave(&one, band.color, out);
+    }
+    out->through = out->filter;
+    out->spectrum = out->has_transmission ? bands : 0;
+}
+
 void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit, const Interiors *interiors,
                     SurfaceSample *out)
 {
@@ -256,7 +309,7 @@ void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit, const I
     s.interiors = interiors;
     s.out = out;
     s.has_step = false;
-    s.has_fresnel = s.is_interface_in = false;
+    s.is_interface_in = false;
     out->at = hit->point;
     out->wo = v3_neg(ray->d);
     bool is_inside = set_normals(&s, &hit->point);
@@ -276,4 +329,7 @@ void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit, const I
     out->has_transmission = fabsf(rgb_grey(out->filter)) > (float)out->settings->adc_bailout;
     if (out->has_transmission)
         sample_transmission(&s);
+    out->spectrum = 0;
+    if (tracer->has_dispersion && interiors->wavelength == 0)
+        disperse(thread, &s);
 }

@@ -78,23 +78,28 @@ bool trace_closest(TraceThread *thread, const Ray *ray, RayKind kind, Hit *out);
  * to the side d points to, by more than the point's error bound; (0, infinity). */
 Ray trace_ray_from(const ShapePoint *point, V3 d);
 
-/* The interiors a ray is inside of, innermost last. */
+/* The interiors a ray is inside of.  The last is what it is in: of those with the highest priority
+ * the one entered last. */
 enum { INTERIORS_MAX = 12 };
 typedef struct Interiors {
     int count;
+    float wavelength; /* nm: of light that was dispersed; 0: all wavelengths together */
     const Interior *in[INTERIORS_MAX];
     uint32_t
         object[INTERIORS_MAX]; /* the surface's object: entering and leaving are paired by it */
 } Interiors;
 
 /* Fill `out` with the interiors that contain p (for a camera or light inside glass): those of
- * objects that let light through, by size; where there are media, fog or rainbows those of opaque
+ * objects that let light through, by priority, then by size; where there are media, fog or rainbows those of opaque
  * ones too. */
 void interiors_at(const Tracer *tracer, V3 p, Interiors *out);
 
 /* Return what the innermost interior lets pass of light that goes t scene units in it.  Every leg
  * of a ray or photon is absorbed so, whatever it ends at. */
-Rgb interiors_fade(const Interiors *inside, double t);
+static inline Rgb interiors_fade(const Interiors *inside, double t)
+{
+    return inside->count > 0 ? interior_fade(inside->in[inside->count - 1], t, false) : RGB_WHITE;
+}
 
 /* One layer of a surface, evaluated.  Colours are pov-facts' symbols: see finish arithmetic in
  * man/pms.5. */
@@ -128,12 +133,18 @@ typedef struct SurfaceSample {
     Rgb through;            /* throughput of the transmitted ray: filter, 1 if total reflection */
     V3 transmit_dir;        /* unit */
     double ior_ratio;       /* of this side to the far side */
+    int spectrum;           /* above 0: light of all wavelengths is dispersed here, and the eye wants
+                               this many bands of it; see surface_sample */
     Interiors inside_after; /* of the transmitted ray */
     const SceneSettings *settings;
 } SurfaceSample;
 
 /* Evaluate the surface at a hit for a ray inside `interiors`.  Surfaces tied to the hit follow as
- * layers below its own, so that glass shows the table it touches. */
+ * layers below its own, so that glass shows the table it touches.
+ *
+ * Where light of all wavelengths is dispersed, what is reflected and what passes (filter) are
+ * means over them, and the transmitted ray is that of none in particular.  One of a wavelength
+ * is had by asking again with that in `interiors`, and has it from then on (inside_after). */
 void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit, const Interiors *interiors,
                     SurfaceSample *out);
 

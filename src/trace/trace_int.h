@@ -46,6 +46,7 @@ struct Tracer {
     ViewIndex *camera_view;  /* NULL: none */
     ViewIndex **light_views; /* per light; NULL: none */
     Bound bound;
+    bool has_dispersion;
 };
 
 enum { NO_OBJECT = UINT32_MAX };
@@ -95,7 +96,8 @@ enum { PASSAGES_MAX = 1 + HIT_TIES_MAX };
 
 /* What becomes of the interiors of a ray. */
 typedef struct InteriorStep {
-    double ior_from, ior_to; /* equal: no bend */
+    double ior_from, ior_to; /* at the ray's wavelength; equal: no bend */
+    int spectrum;            /* bands that light of all wavelengths is dispersed into; 0: it is not */
 } InteriorStep;
 
 /* Pass surfaces in one place, those left before those entered; `after` is set to what a ray in

@@ -189,6 +189,7 @@ Status tracer_new(const Scene *scene, const Plan *plan, int threads, Diag *diag,
         return diag_no_memory(diag, "the tracer");
     tracer->scene = scene;
     tracer->plan = plan;
+    tracer->has_dispersion = plan_has(plan, FEATURE_DISPERSION);
     tracer->bound = BOUND_EMPTY;
     tracer->objects = mem_array((size_t)scene->object_count + 1, sizeof *tracer->objects);
     tracer->clear = mem_array((size_t)scene->object_count + 1, sizeof *tracer->clear);
