@@ -47,12 +47,22 @@ static const CommandInfo *command_info(const char *name)
     return &command_infos[0];
 }
 
+/* Written in brackets: an argument that may be left out. */
+static bool is_optional(const Option *option)
+{
+    return option->argument && option->argument[0] == '[';
+}
+
 static void print_option(const Option *option)
 {
     char left[64];
+    const char *argument = option->argument ? option->argument : "";
     snprintf(left, sizeof left, "%s%c%s --%s%s%s", option->letter ? "-" : " ",
              option->letter ? option->letter : ' ', option->letter ? "," : " ", option->name,
-             option->argument ? "=" : "", option->argument ? option->argument : "");
+             is_optional(option) ? "[="
+             : option->argument  ? "="
+                                 : "",
+             is_optional(option) ? argument + 1 : argument);
     printf("  %-*s %s\n", HELP_COLUMN, left, option->text);
 }
 
@@ -181,7 +191,7 @@ static Status parse_long(Args *args, int bit, int argc, char **argv, int *i)
             continue;
         if (!option->argument && equals)
             return diag_fail(args->diag, ERR_USAGE, "--%s takes no value", option->name);
-        if (!option->argument)
+        if (!option->argument || (is_optional(option) && !equals))
             return set_option(args, id, "");
         if (!equals && *i + 1 >= argc)
             return diag_fail(args->diag, ERR_USAGE, "--%s wants %s after it", option->name,
@@ -391,6 +401,21 @@ static Status read_integrator(const Args *args, PlanOptions *out)
     return args_number(args, OPT_LIGHT_RADIUS, 0, LIGHT_RADIUS_MAX, 0, &out->light_radius);
 }
 
+static Status read_indirect(const Args *args, PlanOptions *out)
+{
+    static const char *const words[INDIRECT_COUNT] = {"", "cache", "gather", "map"};
+    const char *text = args->value[OPT_GI];
+    out->has_indirect = args_has(args, OPT_GI);
+    for (int i = 0; text && i < INDIRECT_COUNT; i++)
+        if (strcmp(text, words[i]) == 0) {
+            out->indirect = (IndirectMethod)i;
+            return OK;
+        }
+    return text
+               ? diag_fail(args->diag, ERR_USAGE, "--gi wants cache, gather or map, got '%s'", text)
+               : OK;
+}
+
 Status args_render_options(const Args *args, RenderOptions *out)
 {
     long threads, seed, quality;
@@ -403,10 +428,10 @@ Status args_render_options(const Args *args, RenderOptions *out)
     TRY(read_antialiasing(args, out));
     TRY(read_integrator(args, &out->plan));
     TRY(args_progressive(args, out));
+    TRY(read_indirect(args, &out->plan));
     out->threads = (int)threads;
     out->seed = (uint64_t)seed;
     out->plan.quality = (int)(quality > 9 ? 9 : quality);
-    out->plan.has_indirect = args_has(args, OPT_GI);
     out->plan.has_no_photons = args_has(args, OPT_NO_PHOTONS);
     out->has_alpha = args_has(args, OPT_ALPHA);
     return OK;

@@ -35,17 +35,17 @@ static void print_features(const Explanation *e)
     }
 }
 
-static void print_lights(const Explanation *e, const char *map, const LightBooks *books)
+static void print_lights(const char *map, const LightBooks *books, int count)
 {
     if (!books)
         return;
     uint64_t total = 0;
-    for (int i = 0; i < e->scene->light_count; i++)
+    for (int i = 0; i < count; i++)
         total += books[i].budget;
     printf("\n%s photons, %" PRIu64 " to send", map, total);
     printf("\n%-20s %12s %8s %10s\n", "light", "power", "share", "photons");
-    for (int i = 0; i < e->scene->light_count; i++)
-        printf("%-20s %12.5g %7.2f%% %10" PRIu64 "\n", e->scene->lights[i].name, books[i].power,
+    for (int i = 0; i < count; i++)
+        printf("%-20s %12.5g %7.2f%% %10" PRIu64 "\n", books[i].name, books[i].power,
                100 * books[i].share, books[i].budget);
 }
 
@@ -78,8 +78,8 @@ static void print_text(const Explanation *e)
            e->scene->object_count == 1 ? "" : "s", e->scene->light_count,
            e->scene->light_count == 1 ? "" : "s");
     print_features(e);
-    print_lights(e, "caustic", e->books.caustic);
-    print_lights(e, "global", e->books.global);
+    print_lights("caustic", e->books.caustic, e->books.caustic_count);
+    print_lights("global", e->books.global, e->books.global_count);
     if (!e->books.caustic && !e->books.global)
         printf("\nno photon pass\n");
     print_passes(e);
@@ -100,12 +100,12 @@ static void print_json_feature(const Explanation *e, int id)
     putchar('}');
 }
 
-static void print_json_lights(const Explanation *e, const char *map, const LightBooks *books)
+static void print_json_lights(const char *map, const LightBooks *books, int count)
 {
     printf(",\n  \"%s_photons\": [", map);
-    for (int i = 0; books && i < e->scene->light_count; i++) {
+    for (int i = 0; books && i < count; i++) {
         printf("%s\n    {\"light\": ", i ? "," : "");
-        json_string(stdout, e->scene->lights[i].name);
+        json_string(stdout, books[i].name);
         printf(", \"power\": ");
         json_number(stdout, books[i].power);
         printf(", \"share\": ");
@@ -137,8 +137,8 @@ static void print_json(const Explanation *e)
     for (int i = 0; i < FEATURE_COUNT; i++)
         print_json_feature(e, i);
     printf("\n  ]");
-    print_json_lights(e, "caustic", e->books.caustic);
-    print_json_lights(e, "global", e->books.global);
+    print_json_lights("caustic", e->books.caustic, e->books.caustic_count);
+    print_json_lights("global", e->books.global, e->books.global_count);
     print_json_passes(e);
     printf("\n}\n");
 }

@@ -29,10 +29,10 @@ static void print_flux(FILE *file, const char *name, Rgb flux)
             (double)flux.b);
 }
 
-static void print_book(FILE *file, const char *light, const LightBooks *book)
+static void print_book(FILE *file, const LightBooks *book)
 {
     fputs("\n      {\"light\": ", file);
-    json_string(file, light);
+    json_string(file, book->name);
     fputs(", \"power\": ", file);
     json_number(file, book->power);
     fputs(", \"share\": ", file);
@@ -50,13 +50,13 @@ static void print_book(FILE *file, const char *light, const LightBooks *book)
     fputc('}', file);
 }
 
-static void print_books(FILE *file, const char *name, const Scene *scene, const LightBooks *books,
+static void print_books(FILE *file, const char *name, const LightBooks *books, int count,
                         uint64_t hash)
 {
     fprintf(file, "    \"%s\": {\"hash\": \"%016" PRIx64 "\", \"lights\": [", name, hash);
-    for (int i = 0; books && i < scene->light_count; i++) {
+    for (int i = 0; books && i < count; i++) {
         fputs(i ? "," : "", file);
-        print_book(file, scene->lights[i].name, &books[i]);
+        print_book(file, &books[i]);
     }
     fputs("]}", file);
 }
@@ -95,8 +95,10 @@ void stats_print_json(FILE *file, const Scene *scene, const RenderResult *result
         fprintf(file, "%s\n    \"%s\": %s", i ? "," : "", feature_name((FeatureId)i),
                 plan_has(&result->plan, (FeatureId)i) ? "true" : "false");
     fputs("\n  },\n  \"photon_maps\": {\n", file);
-    print_books(file, "caustic", scene, result->books.caustic, result->caustic_hash);
+    print_books(file, "caustic", result->books.caustic, result->books.caustic_count,
+                result->caustic_hash);
     fputs(",\n", file);
-    print_books(file, "global", scene, result->books.global, result->global_hash);
+    print_books(file, "global", result->books.global, result->books.global_count,
+                result->global_hash);
     fputs("\n  }\n}\n", file);
 }

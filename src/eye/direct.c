@@ -139,11 +139,9 @@ Rgb caustic_light(EyeThread *eye, const SurfaceSample *s)
     return directional_caustic(eye, s);
 }
 
-Rgb indirect_light(EyeThread *eye, const SurfaceSample *s)
+Rgb mapped_light(EyeThread *eye, const SurfaceSample *s)
 {
     const EyeOptions *options = &eye->options;
-    if (!options->global)
-        return RGB_BLACK;
     if (surface_has_brilliance(s))
         return brilliant_gather(eye, options->global, &options->global_limits, s);
     return diffuse_gather(eye, options->global, &options->global_limits, s);

@@ -1,20 +1,22 @@
 /* The eye pass: radiance along a camera ray.
  *
  * Direct light by shadow rays, reflection and refraction by recursion with the language's
- * finish arithmetic, caustics from the caustic map, indirect light from the global map.
+ * finish arithmetic, caustics from the caustic map, indirect light by final gathering over the
+ * global map, or from it directly.
  * SPDX-License-Identifier: Apache-2.0 */
 #ifndef PMS_EYE_EYE_H
 #define PMS_EYE_EYE_H
 
 #include "eye/photon_reach.h"
 #include "photon/gather.h"
+#include "photon/irradiance.h"
 #include "trace/trace.h"
 
 /* Light by where it comes from; the parts add up to the beauty. */
 typedef enum LightPart {
     PART_DIRECT,   /* ambient, emission, lights, highlights and the background */
     PART_CAUSTIC,  /* from the caustic map */
-    PART_INDIRECT, /* from the global map */
+    PART_INDIRECT, /* gathered, or from the global map */
     PART_COUNT
 } LightPart;
 
@@ -26,6 +28,8 @@ typedef struct EyeOptions {
                               lens) is a single point for each sample */
     uint32_t first_sample; /* samples of each pixel in the passes before */
     const PhotonMap *caustic, *global; /* NULL: none */
+    const IrradianceMap *irradiance;   /* for final gathering; NULL: look at the global map */
+    const struct IrradianceCache *cache; /* NULL: gather everywhere */
     const PhotonReach *caustic_reach;  /* for caustic_limits */
     GatherLimits caustic_limits, global_limits;
 } EyeOptions;

@@ -27,6 +27,13 @@ typedef struct PathKeys {
     uint32_t index;
 } PathKeys;
 
+/* Records made in a row of a round that fills the irradiance cache. */
+typedef struct FreshRecords {
+    struct IrradianceRecord *items;
+    size_t count, capacity;
+    bool is_short; /* memory ran out */
+} FreshRecords;
+
 struct EyeThread {
     TraceThread trace;
     const Scene *scene;
@@ -41,6 +48,7 @@ struct EyeThread {
     Interiors camera_interiors; /* around that point */
     double *blur_limits;        /* variance of the mean below which n rays are enough */
     Rng rng;                    /* of the sample being traced */
+    FreshRecords *fresh;        /* not NULL: the cache is being filled, no picture made */
     PathKeys path;
     /* Shadow samples of the area light at hand, valid where the mark is the current one. */
     Rgb *grid;
@@ -71,13 +79,15 @@ Rgb layers_direct(const SurfaceSample *s, V3 to_light, bool has_highlights);
 /* Return the light of all light sources that a surface sends to the viewer. */
 Rgb direct_light(EyeThread *eye, const SurfaceSample *s, bool has_highlights);
 
-/* Return what a surface gives off: ambient light, emission, and in unlit pictures the pigment
- * itself. */
-Rgb own_light(const EyeThread *eye, const SurfaceSample *s);
-
 /* Return the light of the caustic map (of the global map) that a surface sends to the viewer. */
 Rgb caustic_light(EyeThread *eye, const SurfaceSample *s);
-Rgb indirect_light(EyeThread *eye, const SurfaceSample *s);
+Rgb mapped_light(EyeThread *eye, const SurfaceSample *s);
+
+/* Return the indirect light that a surface sends to the viewer, by final gathering.
+ *
+ * inside  the interiors before it.
+ * weight  how much of the picture it can be, at most. */
+Rgb gathered_light(EyeThread *eye, const SurfaceSample *s, const Interiors *inside, float weight);
 
 /* Return what a ray that met nothing sees.  transmit: how much of a picture behind the sky shows
  * through it; nothing in a mirror. */

@@ -108,7 +108,7 @@ static void add_sky(const EyeThread *eye, const Path *path, Radiance *out)
 /* Highlights are for the eye: between surfaces they would send on more light than comes. */
 static void add_surface(EyeThread *eye, const Path *path, const SurfaceSample *s, Radiance *out)
 {
-    Rgb light = own_light(eye, s);
+    Rgb light = surface_glow(eye->trace.tracer, s);
     if (plan_has(eye->plan, FEATURE_LIGHTS))
         light = rgb_add(light, direct_light(eye, s, path->diffuse == 0));
     add_part(out, part_of(path), path->weight, light);

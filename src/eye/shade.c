@@ -37,24 +37,6 @@ static Rgb radiance_sum(const Radiance *r)
     return rgb_add(rgb_add(r->part[PART_DIRECT], r->part[PART_CAUSTIC]), r->part[PART_INDIRECT]);
 }
 
-Rgb own_light(const EyeThread *eye, const SurfaceSample *s)
-{
-    const Plan *plan = eye->plan;
-    Rgb sum = RGB_BLACK;
-    for (int i = 0; i < s->layer_count; i++) {
-        const SurfaceLayer *layer = &s->layers[i];
-        Rgb glow = layer->finish->emission;
-        if (plan->is_unlit)
-            glow = RGB_WHITE;
-        else if (plan->has_ambient)
-            glow =
-                rgb_add(glow, rgb_mul(layer->finish->ambient, eye->scene->settings.ambient_light));
-        Rgb seen = rgb_scale(rgb_mul(layer->above, layer->color), layer->opacity);
-        sum = rgb_add(sum, rgb_mul(seen, glow));
-    }
-    return sum;
-}
-
 static float channel_power(float sum, float power)
 {
     return sum > 0 ? powf(sum, power) / sum : 0;
@@ -155,16 +137,25 @@ void describe_first(const Hit *hit, const SurfaceSample *s, EyeSample *first)
     first->albedo = albedo;
 }
 
+static void add_indirect(EyeThread *eye, const Path *path, const SurfaceSample *s, Radiance *out)
+{
+    Rgb light = eye->options.irradiance ? gathered_light(eye, s, &path->inside, path->weight)
+                                        : mapped_light(eye, s);
+    add_part(out, PART_INDIRECT, path->through, light);
+}
+
 static void add_surface(EyeThread *eye, const Path *path, const SurfaceSample *s, Radiance *out)
 {
-    Rgb direct = own_light(eye, s);
-    if (plan_has(eye->plan, FEATURE_LIGHTS))
-        direct = rgb_add(direct, direct_light(eye, s, true));
-    add_part(out, PART_DIRECT, path->through, direct);
-    if (eye->options.caustic)
-        add_part(out, PART_CAUSTIC, path->through, caustic_light(eye, s));
+    if (!eye->fresh) {
+        Rgb direct = surface_glow(eye->trace.tracer, s);
+        if (plan_has(eye->plan, FEATURE_LIGHTS))
+            direct = rgb_add(direct, direct_light(eye, s, true));
+        add_part(out, PART_DIRECT, path->through, direct);
+        if (eye->options.caustic)
+            add_part(out, PART_CAUSTIC, path->through, caustic_light(eye, s));
+    }
     if (eye->options.global)
-        add_part(out, PART_INDIRECT, path->through, indirect_light(eye, s));
+        add_indirect(eye, path, s, out);
     if (plan_has(eye->plan, FEATURE_REFLECTION))
         add_reflections(eye, path, s, out);
 }

@@ -119,6 +119,8 @@ bool beam_ray(const Beam *beam, V2 square, V2 area, BeamRay *out)
 bool beam_can_shine(const Beam *beam)
 {
     const Light *light = beam->light;
+    if (!light)
+        return true;
     V3 to_ball = v3_sub(beam->center, light->location);
     double distance = v3_len(to_ball);
     if (light->kind == LIGHT_CYLINDER) {
@@ -137,6 +139,8 @@ bool beam_can_shine(const Beam *beam)
 
 Rgb beam_flux(const Beam *beam, const BeamRay *ray, double length)
 {
+    if (!beam->light)
+        return rgb_scale(ray->flux, (float)ray->measure);
     LightSample light = light_at(beam->light, ray->location, ray_at(&ray->ray, length));
     double spread = light_is_parallel(beam->light) ? 1 : length * length;
     return rgb_scale(light.color, (float)(ray->measure * spread));

@@ -9,6 +9,9 @@
 #include "base/mem.h"
 #include "base/work.h"
 
+#include <limits.h>
+#include <stdio.h>
+
 /* Random numbers, by map: of photons, and of the keys of their points. */
 enum { PASS_PHOTON = 0x700, PASS_KEYS = 0x720 };
 
@@ -107,13 +110,97 @@ static bool add_target_beams(Emission *emission, size_t *capacity, Beam beam)
     return true;
 }
 
+/* What a beam of glow shines through: of endless things, what is within reach. */
+static Bound glow_box(const Emission *emission, Bound bound)
+{
+    const WalkRules *rules = &emission->rules;
+    double reach = REACH_RADII_PARALLEL * rules->radius;
+    V3 half = v3(reach, reach, reach);
+    return bound_intersect(bound,
+                           (Bound){v3_sub(rules->center, half), v3_add(rules->center, half)});
+}
+
+/* Return whether some surface of an object lights others. */
+static void find_glowing(const Emission *emission, bool *is_glowing)
+{
+    const Scene *scene = tracer_scene(emission->tracer);
+    const Plan *plan = tracer_plan(emission->tracer);
+    for (uint32_t i = 0; i < scene->surface_count; i++) {
+        const Surface *s = &scene->surfaces[i];
+        if (!s->no_radiosity && !scene->objects[s->object].no_shadow && plan_surface_glows(plan, s))
+            is_glowing[s->object] = true;
+    }
+}
+
+static int new_source(Emission *emission, const char *name)
+{
+    LightBooks *books = &emission->books[emission->source_count];
+    snprintf(books->name, sizeof books->name, "%s", name);
+    return emission->source_count++;
+}
+
+static bool add_glow_beam(Emission *emission, size_t *capacity, Beam *beam, Bound bound,
+                          const char *name)
+{
+    beam->box = glow_box(emission, bound);
+    if (bound_is_empty(beam->box) || !(box_area(beam->box) > 0))
+        return true;
+    beam->source = new_source(emission, name);
+    beam->spacing_factor = 1;
+    beam->brightness = (double)emission->rules.brightness;
+    return add_beam(emission, capacity, beam);
+}
+
+static bool add_object_beams(Emission *emission, size_t *capacity, const bool *is_glowing)
+{
+    const Scene *scene = tracer_scene(emission->tracer);
+    for (uint32_t i = 0; i < scene->object_count; i++) {
+        const Object *object = &scene->objects[i];
+        Beam beam = {.emitter = object};
+        if (!is_glowing[i])
+            continue;
+        beam.is_outside_only = tracer_is_opaque_solid(emission->tracer, i);
+        if (!add_glow_beam(emission, capacity, &beam, object->bound, object->name))
+            return false;
+    }
+    return true;
+}
+
+/* The sky's box is a little larger than what it shines on, so that nothing lies on its faces. */
+static bool add_sky_beam(Emission *emission, size_t *capacity)
+{
+    const WalkRules *rules = &emission->rules;
+    Beam beam = {.is_endless = isfinite(rules->reach)};
+    double grow = 1e-6 * rules->radius;
+    Bound box = {v3_sub(rules->part.lo, v3(grow, grow, grow)),
+                 v3_add(rules->part.hi, v3(grow, grow, grow))};
+    return add_glow_beam(emission, capacity, &beam, beam.is_endless ? BOUND_ALL : box, "sky");
+}
+
+/* Add the beams of what glows, with a book for each. */
+static Status add_glow(Emission *emission, size_t *capacity)
+{
+    const Scene *scene = tracer_scene(emission->tracer);
+    const Plan *plan = tracer_plan(emission->tracer);
+    bool *is_glowing = mem_array((size_t)scene->object_count + 1, sizeof *is_glowing);
+    bool is_good = is_glowing != NULL;
+    if (is_good && plan_has(plan, FEATURE_GLOW)) {
+        find_glowing(emission, is_glowing);
+        is_good = add_object_beams(emission, capacity, is_glowing);
+    }
+    if (is_good && plan_has(plan, FEATURE_SKY_LIGHT))
+        is_good = add_sky_beam(emission, capacity);
+    mem_free(is_glowing);
+    return is_good ? OK : diag_no_memory(emission->diag, "photon beams");
+}
+
 static Status make_beams(Emission *emission)
 {
     const Scene *scene = tracer_scene(emission->tracer);
     size_t capacity = 0;
     bool is_good = true;
     for (int i = 0; i < scene->light_count && is_good; i++) {
-        Beam beam = {.light = &scene->lights[i], .light_index = i, .spacing_factor = 1};
+        Beam beam = {.light = &scene->lights[i], .source = i, .spacing_factor = 1};
         if (!takes_part(emission, i))
             continue;
         if (emission->rules.map == MAP_CAUSTIC) {
@@ -127,23 +214,26 @@ static Status make_beams(Emission *emission)
             is_good = add_beam(emission, &capacity, &beam);
         }
     }
-    return is_good ? OK : diag_no_memory(emission->diag, "photon beams");
+    if (!is_good)
+        return diag_no_memory(emission->diag, "photon beams");
+    return emission->rules.map == MAP_GLOBAL ? add_glow(emission, &capacity) : OK;
 }
 
 /* --- random numbers --------------------------------------------------------------------- */
 
 Rng emission_rng(const Emission *emission, const Beam *beam, uint64_t index)
 {
-    uint64_t item = (emission_beam_number(emission, beam) << 40) + index;
+    uint64_t item = (emission->draw << 62) + (emission_beam_number(emission, beam) << 40) + index;
     return rng_at(emission->options->seed, PASS_PHOTON + (uint32_t)emission->rules.map, item);
 }
 
-static void set_keys(Emission *emission)
+void emission_set_keys(Emission *emission, uint64_t draw)
 {
+    emission->draw = draw;
     for (int i = 0; i < emission->beam_count; i++) {
         Beam *beam = &emission->beams[i];
-        Rng keys =
-            rng_at(emission->options->seed, PASS_KEYS + (uint32_t)emission->rules.map, (uint64_t)i);
+        Rng keys = rng_at(emission->options->seed, PASS_KEYS + (uint32_t)emission->rules.map,
+                          (draw << 32) + (uint64_t)i);
         beam->square_key = rng_u64(&keys);
         beam->shift_key = rng_u64(&keys);
         beam->area_key = rng_u64(&keys);
@@ -154,19 +244,20 @@ static void set_keys(Emission *emission)
 
 /* The points of a beam's square are a Hammersley set in its own order, so that photons that
  * follow each other go nearly the same way through the scene. */
-bool emission_ray(const Beam *beam, uint64_t index, BeamRay *out)
+bool emission_ray(TraceThread *thread, const Beam *beam, uint64_t index, BeamRay *out)
 {
     uint32_t number = (uint32_t)index;
     Rng shift = {beam->shift_key, index};
-    V2 u = {((double)index + rng_double(&shift)) / (double)beam->budget,
+    V2 u = {((double)index + rng_double(&shift)) / (double)beam->rays,
             sample_inverse(number, beam->square_key)};
     double density;
     V2 square = beam_warp(beam, u, &density);
     V2 area = {0.5, 0.5};
-    if (beam->light->has_area_photons)
+    if (!beam->light || beam->light->has_area_photons)
         area = sample_2d(number, beam->area_key);
-    bool is_lit = beam_ray(beam, square, area, out);
-    out->measure /= density * (double)beam->budget;
+    double choice = beam->light ? 0 : rng_double(&shift);
+    bool is_lit = emission_ray_at(thread, beam, square, area, choice, out);
+    out->measure /= density * (double)beam->rays;
     return is_lit;
 }
 
@@ -222,11 +313,18 @@ static double photons_wanted(const Emission *emission, bool is_after_pilot)
     return SPACED_PHOTONS_MAX;
 }
 
+static void set_rays(Beam *beam, uint64_t photons)
+{
+    beam->budget = beam->rays = photons;
+    if (!beam->light)
+        beam->rays = (uint64_t)ceil((double)photons / beam->part_lit);
+}
+
 static Status share_beams(Emission *emission, int light, uint64_t total)
 {
     int first = 0, count = 0;
     for (int i = emission->beam_count - 1; i >= 0; i--)
-        if (emission->beams[i].light_index == light) {
+        if (emission->beams[i].source == light) {
             first = i;
             count++;
         }
@@ -239,7 +337,7 @@ static Status share_beams(Emission *emission, int light, uint64_t total)
         }
         photon_budget(weights, count, total, shares);
         for (int i = 0; i < count; i++)
-            emission->beams[first + i].budget = shares[i];
+            set_rays(&emission->beams[first + i], shares[i]);
     }
     bool is_good = weights && shares;
     mem_free(weights);
@@ -247,18 +345,17 @@ static Status share_beams(Emission *emission, int light, uint64_t total)
     return is_good ? OK : diag_no_memory(emission->diag, "photon budgets");
 }
 
-static Status share_lights(Emission *emission, uint64_t total)
+static Status share_sources(Emission *emission, uint64_t total)
 {
-    const Scene *scene = tracer_scene(emission->tracer);
-    int lights = scene->light_count;
+    int lights = emission->source_count;
     double *weights = mem_array((size_t)lights + 1, sizeof *weights), sum = 0;
     uint64_t *shares = mem_array((size_t)lights + 1, sizeof *shares);
     Status status = weights && shares ? OK : diag_no_memory(emission->diag, "photon budgets");
     for (int i = 0; status == OK && i < emission->beam_count; i++) {
         const Beam *beam = &emission->beams[i];
-        double weight = beam->flux * (double)beam->light->photon_share;
-        emission->books[beam->light_index].power += beam->flux;
-        weights[beam->light_index] += weight;
+        double weight = beam->flux * (beam->light ? (double)beam->light->photon_share : 1);
+        emission->books[beam->source].power += beam->flux;
+        weights[beam->source] += weight;
         sum += weight;
     }
     if (status == OK)
@@ -307,6 +404,7 @@ static void set_rules(Emission *emission, MapKind map)
                                     : tracer_bound(emission->tracer);
     emission->rules =
         (WalkRules){.map = map,
+                    .part = bound,
                     .center = bound_center(bound),
                     .radius = bound_radius(bound),
                     .reach = is_endless ? REACH_RADII * bound_radius(bound) : INFINITY,
@@ -314,7 +412,12 @@ static void set_rules(Emission *emission, MapKind map)
                                                               : settings->max_trace_level,
                     .adc_bailout = (float)(photons->adc_bailout > 0 ? photons->adc_bailout
                                                                     : settings->adc_bailout),
+                    .keeps_first = plan_has(tracer_plan(emission->tracer), FEATURE_FINAL_GATHER),
+                    .max_diffuse = INT_MAX,
+                    .brightness = (float)settings->radiosity.brightness,
                     .inside = emission->inside};
+    if (settings->radiosity.recursion_limit > 0) /* the eye's own look, or gather rays, is one */
+        emission->rules.max_diffuse = settings->radiosity.recursion_limit - 1;
 }
 
 static Status make_threads(Emission *emission)
@@ -333,12 +436,14 @@ Status emission_init(Emission *emission, const Tracer *tracer, MapKind map,
                      const PhotonOptions *options, Diag *diag)
 {
     const Scene *scene = tracer_scene(tracer);
-    size_t lights = (size_t)scene->light_count;
+    size_t lights = (size_t)scene->light_count, sources = lights + scene->object_count + 1;
     *emission = (Emission){.tracer = tracer, .options = options, .diag = diag};
-    emission->books = mem_array(lights + 1, sizeof *emission->books);
+    emission->books = mem_array(sources, sizeof *emission->books);
     emission->inside = mem_array(lights + 1, sizeof *emission->inside);
     if (!emission->books || !emission->inside)
         return diag_no_memory(diag, "the photon pass");
+    for (size_t i = 0; i < lights; i++)
+        new_source(emission, scene->lights[i].name);
     set_rules(emission, map);
     for (size_t i = 0; i < lights; i++)
         interiors_at(tracer, scene->lights[i].location, &emission->inside[i]);
@@ -346,9 +451,9 @@ Status emission_init(Emission *emission, const Tracer *tracer, MapKind map,
     TRY(make_beams(emission));
     if (emission->beam_count == 0)
         return OK;
-    set_keys(emission);
+    emission_set_keys(emission, 0);
     TRY(emission_pilot(emission, photons_wanted(emission, false)));
-    return share_lights(emission, (uint64_t)photons_wanted(emission, true));
+    return share_sources(emission, (uint64_t)photons_wanted(emission, true));
 }
 
 void emission_done(Emission *emission, Stats *add_to)

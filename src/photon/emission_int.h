@@ -16,8 +16,10 @@ typedef struct Emission {
     int beam_count;
     TraceThread *threads;
     int thread_count;
-    LightBooks *books; /* per light; the caller's after the pass */
+    LightBooks *books; /* per source; the caller's after the pass */
+    int source_count;  /* the lights, the objects that glow, the sky */
     uint64_t budget;   /* photons in all */
+    uint64_t draw;     /* of emission_set_keys */
 } Emission;
 
 /* Aim the beams, try them with a few photons each, and share the photons out.  Free with
@@ -35,12 +37,27 @@ static inline uint64_t emission_beam_number(const Emission *emission, const Beam
 }
 
 /* Draw ray `index` of a beam.  Returns false where the light does not shine. */
-bool emission_ray(const Beam *beam, uint64_t index, BeamRay *out);
+bool emission_ray(TraceThread *thread, const Beam *beam, uint64_t index, BeamRay *out);
+
+/* Make the ray at a point of a beam's square; `more` and `choice` pick what it has besides. */
+static inline bool emission_ray_at(TraceThread *thread, const Beam *beam, V2 square, V2 more,
+                                   double choice, BeamRay *out)
+{
+    return beam->light ? beam_ray(beam, square, more, out)
+                       : emitter_ray(thread, beam, square, more, choice, out);
+}
 
 /* Return the generator of a photon. */
 Rng emission_rng(const Emission *emission, const Beam *beam, uint64_t index);
 
 /* Send all photons; *out holds them in order of light, target and index. */
 Status emission_run(Emission *emission, PhotonList *out);
+
+/* Send one for every `part` photons, others than emission_run sends: for places that do not depend
+ * on those.  The books do not count them. */
+Status emission_run_places(Emission *emission, int part, PhotonList *out);
+
+/* Draw new sequences of points for all beams, and new numbers for all photons. */
+void emission_set_keys(Emission *emission, uint64_t draw);
 
 #endif

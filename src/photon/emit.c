@@ -20,7 +20,8 @@ typedef struct FluxSum {
 typedef struct Chunk {
     Beam *beam;
     uint64_t first; /* photon of the beam */
-    uint32_t count;
+    uint32_t count; /* rays */
+    uint32_t sent;  /* photons */
     PhotonList photons;
     uint64_t ends[PATH_END_COUNT];
     FluxSum emitted, left[PATH_END_COUNT];
@@ -28,6 +29,7 @@ typedef struct Chunk {
 
 typedef struct EmitWork {
     Emission *emission;
+    bool has_books; /* what is sent counts */
     Chunk *chunks;
     size_t count;
 } EmitWork;
@@ -50,11 +52,15 @@ static void emit_photon(Emission *emission, TraceThread *thread, Chunk *chunk, u
     const Beam *beam = chunk->beam;
     BeamRay ray;
     WalkResult result = {.end = PATH_CUT};
-    if (emission_ray(beam, index, &ray)) {
+    bool is_lit = emission_ray(thread, beam, index, &ray);
+    if (!is_lit && !beam->light) /* a line that met nothing that glows is no photon */
+        return;
+    if (is_lit) {
         Rng rng = emission_rng(emission, beam, index);
         photon_walk(thread, &emission->rules, beam, &ray, index, least, &rng, &chunk->photons,
                     &result);
     }
+    chunk->sent++;
     chunk->ends[result.end]++;
     if (!rgb_is_finite(result.emitted) || !rgb_is_finite(result.left))
         return;
@@ -68,12 +74,13 @@ static void emit_chunk(void *ctx, size_t index, int thread)
     Emission *emission = work->emission;
     const PhotonOptions *options = emission->options;
     Chunk *chunk = &work->chunks[index];
-    const LightBooks *books = &emission->books[chunk->beam->light_index];
-    float mean = (float)(books->power / (3 * (double)books->budget));
+    const LightBooks *books = &emission->books[chunk->beam->source];
+    double thinned = (double)chunk->beam->budget / (double)chunk->beam->rays;
+    float mean = (float)(books->power / (3 * (double)books->budget) * fmax(1, thinned));
     for (uint32_t i = 0; i < chunk->count; i++)
         emit_photon(emission, &emission->threads[thread], chunk, chunk->first + i,
                     mean * THIN_PART);
-    if (thread == 0 && options->progress)
+    if (thread == 0 && work->has_books && options->progress)
         options->progress(options->progress_ctx, (double)index / (double)work->count);
 }
 
@@ -81,14 +88,14 @@ static Status make_chunks(Emission *emission, EmitWork *work)
 {
     size_t count = 0;
     for (int i = 0; i < emission->beam_count; i++)
-        count += (size_t)((emission->beams[i].budget + CHUNK_PHOTONS - 1) / CHUNK_PHOTONS);
-    *work = (EmitWork){emission, mem_array(count + 1, sizeof *work->chunks), 0};
+        count += (size_t)((emission->beams[i].rays + CHUNK_PHOTONS - 1) / CHUNK_PHOTONS);
+    *work = (EmitWork){.emission = emission, .chunks = mem_array(count + 1, sizeof *work->chunks)};
     if (!work->chunks)
         return diag_no_memory(emission->diag, "photons");
     for (int i = 0; i < emission->beam_count; i++) {
         Beam *beam = &emission->beams[i];
-        for (uint64_t first = 0; first < beam->budget; first += CHUNK_PHOTONS) {
-            uint64_t rest = beam->budget - first;
+        for (uint64_t first = 0; first < beam->rays; first += CHUNK_PHOTONS) {
+            uint64_t rest = beam->rays - first;
             uint32_t size = rest < CHUNK_PHOTONS ? (uint32_t)rest : CHUNK_PHOTONS;
             work->chunks[work->count++] = (Chunk){.beam = beam, .first = first, .count = size};
         }
@@ -109,7 +116,7 @@ static void keep_books(LightBooks *books, const Chunk *chunk)
         for (int c = 0; c < 3; c++)
             if (end != PATH_ABSORBED)
                 absorbed.rgb[c] -= chunk->left[end].rgb[c];
-    books->emitted += chunk->count;
+    books->emitted += chunk->sent;
     books->stored_paths += chunk->ends[PATH_STORED];
     books->absorbed += chunk->ends[PATH_ABSORBED];
     books->escaped += chunk->ends[PATH_ESCAPED];
@@ -139,17 +146,19 @@ static Status merge_chunks(const EmitWork *work, PhotonList *out)
             memcpy(out->items + out->count, chunk->photons.items,
                    chunk->photons.count * sizeof *out->items);
         out->count += chunk->photons.count;
-        keep_books(&work->emission->books[chunk->beam->light_index], chunk);
+        if (work->has_books)
+            keep_books(&work->emission->books[chunk->beam->source], chunk);
     }
     out->capacity = total;
     return OK;
 }
 
-Status emission_run(Emission *emission, PhotonList *out)
+static Status run(Emission *emission, bool has_books, PhotonList *out)
 {
     EmitWork work;
     *out = (PhotonList){0};
     TRY(make_chunks(emission, &work));
+    work.has_books = has_books;
     Status status = work_for(emission->thread_count, work.count, emit_chunk, &work);
     if (status == OK)
         status = merge_chunks(&work, out);
@@ -157,4 +166,19 @@ Status emission_run(Emission *emission, PhotonList *out)
         mem_free(work.chunks[i].photons.items);
     mem_free(work.chunks);
     return status;
+}
+
+Status emission_run(Emission *emission, PhotonList *out)
+{
+    return run(emission, true, out);
+}
+
+Status emission_run_places(Emission *emission, int part, PhotonList *out)
+{
+    emission_set_keys(emission, 1);
+    for (int i = 0; i < emission->beam_count; i++) {
+        Beam *beam = &emission->beams[i];
+        beam->rays = (beam->rays + (uint64_t)part - 1) / (uint64_t)part;
+    }
+    return run(emission, false, out);
 }

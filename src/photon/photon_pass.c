@@ -10,6 +10,9 @@ static const FeatureId map_feature[MAP_COUNT] = {FEATURE_CAUSTIC_MAP, FEATURE_GL
 static const StatId map_counter[MAP_COUNT] = {STAT_PHOTONS_CAUSTIC, STAT_PHOTONS_GLOBAL};
 static const char *const map_name[MAP_COUNT] = {"caustic", "global"};
 
+/* Places where irradiance is computed ahead: for one, this many photons are sent. */
+enum { IRRADIANCE_PART = 4 };
+
 /* A part of the progress bar. */
 typedef struct Progress {
     const PhotonOptions *options;
@@ -49,8 +52,8 @@ static Status emit_and_build(Emission *emission, MapKind kind, Stats *stats, Pho
 {
     if (emission->budget == 0) {
         warn_of_none(emission, kind,
-                     kind == MAP_CAUSTIC ? "no photon of any light reaches a target"
-                                         : "no photon of any light reaches a surface");
+                     kind == MAP_CAUSTIC ? "no light reaches a target"
+                                         : "no light reaches a surface");
         return OK;
     }
     PhotonList photons;
@@ -59,7 +62,7 @@ static Status emit_and_build(Emission *emission, MapKind kind, Stats *stats, Pho
     stats->seconds[PHASE_PHOTON_EMIT] += clock_wall() - started;
     if (status != OK)
         return status;
-    count_paths(emission->books, tracer_scene(emission->tracer)->light_count, kind, stats);
+    count_paths(emission->books, emission->source_count, kind, stats);
     if (photons.count == 0) {
         mem_free(photons.items);
         warn_of_none(emission, kind, "no photon was stored");
@@ -76,22 +79,41 @@ static Status emit_and_build(Emission *emission, MapKind kind, Stats *stats, Pho
 static void take_books(Emission *emission, MapKind kind, PhotonBooks *out)
 {
     LightBooks **slot = kind == MAP_CAUSTIC ? &out->caustic : &out->global;
-    out->light_count = tracer_scene(emission->tracer)->light_count;
+    *(kind == MAP_CAUSTIC ? &out->caustic_count : &out->global_count) = emission->source_count;
     *slot = emission->books;
     emission->books = NULL;
 }
 
+/* Send photons of their own to find places, and estimate the irradiance there. */
+static Status make_irradiance(Emission *emission, Stats *stats, PhotonMaps *maps)
+{
+    PhotonList places;
+    double started = clock_wall();
+    Status status = emission_run_places(emission, IRRADIANCE_PART, &places);
+    if (status == OK && places.count == 0)
+        mem_free(places.items);
+    else if (status == OK)
+        status = irradiance_map_new(emission->tracer, maps->global, places.items, places.count,
+                                    emission->options->seed, emission->options->threads,
+                                    emission->diag, &maps->irradiance);
+    stats->seconds[PHASE_IRRADIANCE] += clock_wall() - started;
+    return status;
+}
+
 static Status make_map(const Tracer *tracer, MapKind kind, const PhotonOptions *options, Diag *diag,
-                       Stats *stats, PhotonMap **map, PhotonBooks *books)
+                       Stats *stats, PhotonMaps *maps)
 {
     Emission emission;
     double started = clock_wall();
     Status status = emission_init(&emission, tracer, kind, options, diag);
+    PhotonMap **map = kind == MAP_CAUSTIC ? &maps->caustic : &maps->global;
     stats->seconds[PHASE_PHOTON_EMIT] += clock_wall() - started;
     if (status == OK)
         status = emit_and_build(&emission, kind, stats, map);
+    if (status == OK && kind == MAP_GLOBAL && *map && emission.rules.keeps_first)
+        status = make_irradiance(&emission, stats, maps);
     if (status == OK)
-        take_books(&emission, kind, books);
+        take_books(&emission, kind, &maps->books);
     emission_done(&emission, stats);
     return status;
 }
@@ -164,8 +186,7 @@ Status photon_pass(const Tracer *tracer, const PhotonOptions *options, Diag *dia
         part.progress = options->progress ? progress_part : NULL;
         part.progress_ctx = &progress;
         done += length;
-        status = make_map(tracer, (MapKind)kind, &part, diag, stats,
-                          kind == MAP_CAUSTIC ? &out->caustic : &out->global, &out->books);
+        status = make_map(tracer, (MapKind)kind, &part, diag, stats, out);
     }
     if (status != OK)
         photon_maps_done(out);
@@ -178,6 +199,7 @@ void photon_maps_done(PhotonMaps *maps)
 {
     photon_map_free(maps->caustic);
     photon_map_free(maps->global);
+    irradiance_map_free(maps->irradiance);
     photon_books_done(&maps->books);
     *maps = (PhotonMaps){0};
 }
@@ -230,22 +252,23 @@ static void add_book(LightBooks *to, const LightBooks *from, uint64_t before)
     to->flux_cut = mean_flux(to->flux_cut, from->flux_cut, before);
 }
 
-static void add_map_books(LightBooks **to, LightBooks **from, int lights, uint64_t before)
+static void add_map_books(LightBooks **to, LightBooks **from, int count, uint64_t before)
 {
     if (!*to) {
         *to = *from;
         *from = NULL;
         return;
     }
-    for (int i = 0; *from && i < lights; i++)
+    for (int i = 0; *from && i < count; i++)
         add_book(&(*to)[i], &(*from)[i], before);
 }
 
 void photon_books_add(PhotonBooks *to, PhotonBooks *from, uint64_t before)
 {
-    to->light_count = from->light_count;
-    add_map_books(&to->caustic, &from->caustic, from->light_count, before);
-    add_map_books(&to->global, &from->global, from->light_count, before);
+    to->caustic_count = from->caustic_count;
+    to->global_count = from->global_count;
+    add_map_books(&to->caustic, &from->caustic, from->caustic_count, before);
+    add_map_books(&to->global, &from->global, from->global_count, before);
 }
 
 void photon_books_done(PhotonBooks *books)

@@ -3,11 +3,12 @@
 #ifndef PMS_PHOTON_PHOTON_PASS_H
 #define PMS_PHOTON_PHOTON_PASS_H
 
+#include "photon/irradiance.h"
 #include "photon/photon_map.h"
 #include "trace/trace.h"
 
-/* Per light: what it was given and what became of it.  emitted = stored_paths + absorbed +
- * escaped + cut, exactly; so for the flux, to rounding.
+/* Per source of light: what it was given and what became of it.  emitted = stored_paths +
+ * absorbed + escaped + cut, exactly; so for the flux, to rounding.
  *
  * The language's light has as much flux as the way it goes is long, so a path's flux is what it
  * would be at the surface where the path ended (for stored ones: was first stored); what it lost
@@ -15,8 +16,10 @@
  *
  * Which paths a map holds, and so what may be added up: caustic L S+ D, from a target on;
  * global L S* D (S* D)+, every hit after a first diffuse reflection; the first diffuse hit itself
- * is direct light, by shadow rays, or the caustic map's. */
+ * is direct light, by shadow rays, or the caustic map's.  For final gathering the global map holds
+ * that too, L (S* D)+.  Light of surfaces and sky, which no shadow ray brings, is always there. */
 typedef struct LightBooks {
+    char name[32]; /* of the light, of the object that glows, or "sky" */
     double power; /* flux onto the targets (caustic) or into the scene (global), summed RGB */
     double share; /* of the budget, 0 to 1 */
     uint64_t budget, emitted, stored_paths, absorbed, escaped, cut;
@@ -25,12 +28,14 @@ typedef struct LightBooks {
 } LightBooks;
 
 typedef struct PhotonBooks {
-    int light_count;
-    LightBooks *caustic, *global; /* light_count each, or NULL when that map is not made */
+    LightBooks *caustic, *global; /* NULL when that map is not made */
+    int caustic_count;            /* the lights of the scene */
+    int global_count;             /* the lights, the objects that glow, the sky if it shines */
 } PhotonBooks;
 
 typedef struct PhotonMaps {
     PhotonMap *caustic, *global;          /* NULL: the plan does not call for it */
+    IrradianceMap *irradiance;            /* for final gathering; NULL: not called for */
     double caustic_radius, global_radius; /* gather radii, scene units */
     double caustic_far, global_far;       /* how far a gather may widen that finds too little */
     PhotonBooks books;

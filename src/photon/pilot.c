@@ -16,8 +16,9 @@ enum {
     SIDE_FIRST_MAX = 32,  /* cells a side of the first round */
     SIDE_SEARCH_MAX = 32, /* a beam in which nothing is found is tried up to this */
     SIDE_MAX = 128,
-    PILOT_PART = 4,    /* the pilot sends about this part of the photons, but only to the target */
-    PASS_PILOT = 0x710 /* random numbers, by map */
+    LINES_TRIED = 1024, /* of a beam of what glows, to see how many carry light */
+    PILOT_PART = 4,     /* the pilot sends about this part of the photons, but only to the target */
+    PASS_PILOT = 0x710  /* random numbers, by map */
 };
 
 typedef enum CellState { CELL_OPEN, CELL_SETTLED } CellState;
@@ -57,7 +58,8 @@ static Rgb scout_ray(const Emission *emission, TraceThread *thread, const Beam *
     V2 area = {rng_double(&rng), 0};
     area.v = rng_double(&rng);
     BeamRay ray;
-    if (!beam_ray(beam, square, area, &ray))
+    double choice = beam->light ? 0 : rng_double(&rng);
+    if (!emission_ray_at(thread, beam, square, area, choice, &ray))
         return RGB_BLACK;
     Rgb found = photon_scout(thread, &emission->rules, beam, &ray, &rng, at);
     return rgb_is_finite(found) ? found : RGB_BLACK;
@@ -168,6 +170,25 @@ static bool take_cells(Beam *beam, const Grid *grid)
     return found && beam->cumulative;
 }
 
+/* Lines through a box often miss what glows in it: find how many do not. */
+static void try_lines(const Emission *emission, TraceThread *thread, Beam *beam)
+{
+    Rng rng = rng_at(emission->options->seed, PASS_PILOT + MAP_COUNT,
+                     emission_beam_number(emission, beam));
+    int lit = 0;
+    for (int i = 0; i < LINES_TRIED; i++) {
+        V2 u = {rng_double(&rng), 0}, more;
+        u.v = rng_double(&rng);
+        more.u = rng_double(&rng);
+        more.v = rng_double(&rng);
+        double density;
+        BeamRay ray;
+        V2 square = beam_warp(beam, u, &density);
+        lit += emitter_ray(thread, beam, square, more, rng_double(&rng), &ray);
+    }
+    beam->part_lit = fmax(1, lit) / LINES_TRIED;
+}
+
 typedef struct Pilot {
     Emission *emission;
     double rays;    /* for a beam */
@@ -189,6 +210,8 @@ static void pilot_beam(void *ctx, size_t index, int thread)
     pilot->is_short[index] =
         !grid.cells || !refine_grid(emission, &emission->threads[thread], beam, rest, n, &grid) ||
         !take_cells(beam, &grid);
+    if (!beam->light && beam->cumulative)
+        try_lines(emission, &emission->threads[thread], beam);
     mem_free(grid.cells);
 }
 

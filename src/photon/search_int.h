@@ -4,7 +4,7 @@
 
 #include "photon/gather.h"
 
-enum { GATHER_GUESSES = 2 }; /* a pixel asks two maps in turn */
+enum { GATHER_GUESSES = 3 }; /* a pixel asks so many maps in turn */
 
 /* Photons found.  distance2 has room for whole blocks past count. */
 typedef struct FoundPhotons {

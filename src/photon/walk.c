@@ -24,6 +24,7 @@ typedef struct Walk {
     bool is_aimed;    /* has met its target, or needs none */
     bool is_specular; /* was reflected or refracted */
     bool is_diffuse;  /* was reflected diffusely */
+    int diffuse;      /* how often */
     bool is_straight; /* the last surface did not bend it */
     bool has_chosen;  /* thrown the dice before */
     bool is_scout;
@@ -172,7 +173,7 @@ static bool is_kept(const Walk *walk, const Hit *hit, Rgb diffuse)
     if (rgb_is_black(diffuse))
         return false;
     if (walk->rules->map == MAP_GLOBAL)
-        return walk->is_diffuse;
+        return walk->is_diffuse || walk->rules->keeps_first || !walk->beam->light;
     return walk->is_specular && is_collecting(walk, hit);
 }
 
@@ -181,7 +182,10 @@ static bool is_kept(const Walk *walk, const Hit *hit, Rgb diffuse)
 static void begin(Walk *walk)
 {
     walk->ray = walk->start->ray;
-    walk->inside = walk->rules->inside[walk->beam->light_index];
+    if (walk->beam->light)
+        walk->inside = walk->rules->inside[walk->beam->source];
+    else
+        interiors_at(walk->thread->tracer, walk->ray.o, &walk->inside);
     walk->weight = RGB_WHITE;
     walk->is_aimed = walk->beam->target == NULL;
 }
@@ -217,6 +221,9 @@ static void bounce_diffusely(Walk *walk, const SurfaceSample *s)
 {
     flux_here(walk);
     walk->is_diffuse = true;
+    walk->diffuse++;
+    if (walk->level < walk->rules->max_level)
+        walk->level = 0; /* the limit is for mirrors and glass between; here the dice end it */
     leave(walk, s, warp_to_frame(cosine_direction(walk->rng), s->ng), false);
 }
 
@@ -269,6 +276,7 @@ static bool follow(Walk *walk, const Hit *hit, const SurfaceSample *s, const Rou
         if (walk->rules->map == MAP_CAUSTIC)
             return false;
         walk->weight = rgb_mul(walk->weight, rgb_scale(r->diffuse, (float)(1 / r->p_diffuse)));
+        walk->weight = rgb_scale(walk->weight, walk->rules->brightness);
         bounce_diffusely(walk, s);
         return true;
     case BRANCH_ABSORB:
@@ -291,7 +299,8 @@ static bool is_target(const Walk *walk, const Hit *hit)
  * from. */
 static bool advance(Walk *walk, Hit *hit, SurfaceSample *s, PathEnd *end)
 {
-    if (!trace_closest(walk->thread, &walk->ray, RAY_PHOTON, hit)) {
+    RayKind kind = walk->rules->map == MAP_GLOBAL ? RAY_LIGHT : RAY_PHOTON;
+    if (!trace_closest(walk->thread, &walk->ray, kind, hit)) {
         *end = PATH_ESCAPED;
         return false;
     }
@@ -311,10 +320,17 @@ static bool advance(Walk *walk, Hit *hit, SurfaceSample *s, PathEnd *end)
     return true;
 }
 
+/* Light that a surface gives off has one reflection less to go: the eye sees it directly, light
+ * of a light source by its first reflection. */
+static int most_diffuse(const Walk *walk)
+{
+    return walk->rules->max_diffuse - (walk->beam->light == NULL);
+}
+
 /* The limits of the language. */
 static bool is_over_limit(const Walk *walk)
 {
-    return walk->level >= walk->rules->max_level ||
+    return walk->level >= walk->rules->max_level || walk->diffuse > most_diffuse(walk) ||
            !(rgb_max(walk->weight) >= walk->rules->adc_bailout);
 }
 

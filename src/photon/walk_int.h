@@ -11,9 +11,12 @@
  *              reflection or refraction, the first of them at the target, and none but such.
  *              Passing straight through a pass_through object is none.
  * MAP_GLOBAL   L S* D (S* D)+: every hit of a somewhat diffuse surface after at least one
- *              diffuse reflection.
+ *              diffuse reflection; for final gathering all hits, L (S* D)+.  From what glows, E,
+ *              all hits always: E (S* D)+.
  *
- * With direct light (L D, by shadow rays that targets block) each path is counted once. */
+ * Looked at by the eye, direct light (L D, by shadow rays that targets block), the caustic map and
+ * the global map count each path once.  Gather rays take glow and the global map alone, so there
+ * it holds everything. */
 typedef enum MapKind { MAP_CAUSTIC, MAP_GLOBAL, MAP_COUNT } MapKind;
 
 typedef enum PathEnd { PATH_STORED, PATH_ABSORBED, PATH_ESCAPED, PATH_CUT, PATH_END_COUNT } PathEnd;
@@ -30,10 +33,14 @@ typedef struct WalkRules {
     MapKind map;
     V3 center;     /* photon positions are relative to it */
     double radius; /* of the part of the scene that matters, around the centre */
+    Bound part;    /* that part's box */
     double reach;  /* first diffuse hits further from the centre are cut (global) */
     int max_level; /* max_trace_level of photons */
     float adc_bailout;
-    const Interiors *inside; /* per light: the interiors it is in */
+    bool keeps_first;   /* first hits of photons from lights too (global) */
+    int max_diffuse;    /* diffuse reflections before the last hit that is kept (global) */
+    float brightness;   /* factor of every diffuse reflection (global) */
+    const Interiors *inside; /* per light: the interiors it is in; what glows is asked for */
 } WalkRules;
 
 /* What became of a photon. */

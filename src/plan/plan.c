@@ -89,6 +89,29 @@ static bool surface_has_highlights(const Surface *surface)
     return false;
 }
 
+/* Does some layer give off light? */
+static bool texture_glows(const Texture *texture, bool has_ambient)
+{
+    for (int i = 0; texture && i < texture->layer_count; i++) {
+        const Finish *finish = texture->layers[i].finish;
+        if (!rgb_is_black(finish->emission) || (has_ambient && !rgb_is_black(finish->ambient)))
+            return true;
+    }
+    return false;
+}
+
+bool plan_surface_glows(const Plan *plan, const Surface *surface)
+{
+    bool has_ambient = plan->has_ambient;
+    if (texture_glows(surface->texture, has_ambient) ||
+        texture_glows(surface->inner_texture, has_ambient))
+        return true;
+    for (int i = 0; i < surface->mesh_texture_count; i++)
+        if (texture_glows(surface->mesh_textures[i], has_ambient))
+            return true;
+    return false;
+}
+
 static bool photons_do(Tri of_light, Tri of_object)
 {
     if (of_light == TRI_OFF || of_object == TRI_OFF)
@@ -267,23 +290,99 @@ static void plan_caustics(const Scene *scene, const PlanOptions *options, const 
                 found->caustic_lights == 1 ? "" : "s");
 }
 
+/* The first surface whose own light reaches others. */
+static const Surface *glowing_surface(const Scene *scene, const Plan *plan)
+{
+    for (uint32_t i = 0; i < scene->surface_count; i++) {
+        const Surface *s = &scene->surfaces[i];
+        if (!s->no_shadow && !s->no_radiosity && plan_surface_glows(plan, s))
+            return s;
+    }
+    return NULL;
+}
+
+static bool sky_shines(const Scene *scene)
+{
+    Color5 c = scene->background.color;
+    return scene->sky.pigment_count > 0 || !rgb_is_black(rgb_scale(color5_rgb(c), 1 - c.transmit));
+}
+
+static void plan_indirect_method(const Scene *scene, const PlanOptions *options, Plan *plan)
+{
+    static const char *const off[] = {"no indirect light from photons",
+                                      "the global map is looked at directly",
+                                      "gathered everywhere"};
+    const PmsSettings *pms = &scene->settings.pms;
+    PlanRow *gather = &plan->rows[FEATURE_FINAL_GATHER];
+    PlanRow *cache = &plan->rows[FEATURE_IRRADIANCE_CACHE];
+    const PlanRow *map = &plan->rows[FEATURE_GLOBAL_MAP];
+    IndirectMethod method = options->indirect ? options->indirect : pms->method;
+    bool is_progressive = plan_has(plan, FEATURE_PROGRESSIVE);
+    if (is_progressive && method == INDIRECT_ANY) /* whose mean needs no gather rays */
+        method = INDIRECT_MAP;
+    const char *asked = options->indirect ? "asked for on the command line"
+                        : pms->method     ? "gi_method in pms{}"
+                                      : "the way indirect light is found if nothing else is said";
+    if (!map->is_on || method == INDIRECT_MAP) {
+        const char *why = off[map->is_on];
+        row_set(gather, false, SPAN_NONE, "%s", why);
+        row_set(cache, false, SPAN_NONE, "%s", why);
+        return;
+    }
+    row_set(gather, true, map->why, "%s", asked);
+    row_set(cache, method != INDIRECT_GATHER, map->why, "%s",
+            method != INDIRECT_GATHER ? asked : off[2]);
+}
+
+static void plan_glow(const Scene *scene, Plan *plan)
+{
+    bool is_indirect = plan_has(plan, FEATURE_GLOBAL_MAP);
+    const char *none = plan_has(plan, FEATURE_PATHS) ? "path tracing finds that light itself"
+                                                     : "no indirect light";
+    const Surface *s = is_indirect ? glowing_surface(scene, plan) : NULL;
+    bool is_sky = is_indirect && sky_shines(scene);
+    row_set(&plan->rows[FEATURE_GLOW], s, s ? s->span : SPAN_NONE, "%s",
+            s             ? "a finish that gives off light"
+            : is_indirect ? "no finish that casts a shadow gives off light"
+                          : none);
+    row_set(&plan->rows[FEATURE_SKY_LIGHT], is_sky,
+            scene->sky.pigment_count > 0 ? scene->sky.span : scene->background.span, "%s",
+            is_sky        ? "sky_sphere or background that is not black"
+            : is_indirect ? "the background is black"
+                          : none);
+}
+
 static void plan_indirect(const Scene *scene, const PlanOptions *options, const Evidence *found,
-                          bool has_paths, PlanRow *row)
+                          Plan *plan)
 {
     const PmsSettings *pms = &scene->settings.pms;
+    const RadiositySettings *radiosity = &scene->settings.radiosity;
+    PlanRow *row = &plan->rows[FEATURE_GLOBAL_MAP];
+    bool is_asked = options->has_indirect || pms->has_indirect || radiosity->is_on;
+    bool has_paths = plan_has(plan, FEATURE_PATHS);
+    bool is_old = radiosity->is_on && scene->settings.version < 3.7;
+    bool may_be =
+        options->quality >= QUALITY_PHOTONS && is_asked && !has_paths && !options->has_no_photons;
+    plan->has_ambient = !has_paths && (!may_be || is_old);
+    bool has_light = found->light || sky_shines(scene) || glowing_surface(scene, plan);
     if (row_below(row, options->quality, QUALITY_PHOTONS))
         return;
     if (has_paths)
         row_set(row, false, SPAN_NONE, "path tracing finds that light itself");
-    else if (!options->has_indirect && !pms->has_indirect)
-        row_set(row, false, SPAN_NONE, "not asked for (gi)");
+    else if (!is_asked)
+        row_set(row, false, SPAN_NONE, "not asked for (gi, radiosity)");
     else if (options->has_no_photons)
         row_set(row, false, SPAN_NONE, "switched off on the command line");
-    else if (!found->light || scene->surface_count == 0)
-        row_set(row, false, pms->span, "asked for, but there is no light or no surface");
+    else if (!has_light || scene->surface_count == 0)
+        row_set(row, false, pms->has_indirect ? pms->span : radiosity->span,
+                "asked for, but there is no light or no surface");
     else
-        row_set(row, true, pms->span, "%s; finish ambient does not count",
-                options->has_indirect ? "asked for on the command line" : "gi in pms{}");
+        row_set(row, true, pms->has_indirect ? pms->span : radiosity->span, "%s; finish ambient %s",
+                options->has_indirect ? "asked for on the command line"
+                : pms->has_indirect   ? "gi in pms{}"
+                                      : "radiosity{}",
+                is_old ? "counts as emission" : "does not count");
+    plan->has_ambient = !has_paths && (!row->is_on || is_old);
 }
 
 static void plan_lights(const PlanOptions *options, const Evidence *found, Plan *plan)
@@ -404,14 +503,15 @@ Status plan_make(const Scene *scene, const PlanOptions *options, Arena *arena, P
     plan_paths(options, &found, out);
     bool has_paths = plan_has(out, FEATURE_PATHS);
     plan_caustics(scene, options, &found, has_paths, &out->rows[FEATURE_CAUSTIC_MAP]);
-    plan_indirect(scene, options, &found, has_paths, &out->rows[FEATURE_GLOBAL_MAP]);
+    plan_indirect(scene, options, &found, out);
+    plan_indirect_method(scene, options, out);
+    plan_glow(scene, out);
     plan_lights(options, &found, out);
     plan_surfaces(options, &found, out->rows);
     plan_camera_and_sky(scene, out->rows);
     plan_media(scene, options->quality, out->rows);
 
     out->is_unlit = options->quality < QUALITY_LIGHTS;
-    out->has_ambient = !plan_has(out, FEATURE_GLOBAL_MAP) && !has_paths;
     out->light_radius = options->light_radius;
     if (plan_has(out, FEATURE_CAUSTIC_MAP))
         out->caustic_photons = scene->settings.photons.count;

@@ -29,6 +29,7 @@ typedef struct PlanOptions {
     double light_radius;    /* --light-radius, scene units: see Plan */
     bool is_progressive;    /* --progressive */
     bool has_indirect;      /* --gi */
+    IndirectMethod indirect; /* how; INDIRECT_ANY: as the scene says */
     bool has_no_photons;    /* --no-photons */
     int quality;            /* POV's +Q, 0 to 9 */
 } PlanOptions;
@@ -39,7 +40,8 @@ typedef struct Plan {
     PlanRow rows[FEATURE_COUNT];
     bool *light_makes_caustics; /* per light: takes part in the caustic map */
     bool is_unlit;              /* quality 0 and 1: surfaces show their pigment, nothing more */
-    bool has_ambient;           /* finish{ambient} counts (not beside real indirect light) */
+    bool has_ambient;           /* finish{ambient} counts (not beside real indirect light, but
+                                   with radiosity{} before version 3.7, where it lights too) */
     double light_radius;        /* of the disk that a light without an area is to paths; 0: they
                                    cannot meet it */
     int unmet_lights;           /* lights whose caustics paths would bring, had they a size */
@@ -76,6 +78,9 @@ static inline bool plan_has_air(const Plan *plan)
  * the light asks for it and neither forbids it. */
 bool plan_photons_reflect(const Light *light, const Surface *surface);
 bool plan_photons_refract(const Light *light, const Surface *surface);
+
+/* Return true if a surface gives off light of its own, as far as that counts. */
+bool plan_surface_glows(const Plan *plan, const Surface *surface);
 
 /* Return the name of a feature as explain and --stats show it. */
 const char *feature_name(FeatureId feature);

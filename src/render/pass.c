@@ -1,6 +1,7 @@
 /* One pass: photon maps, then the film.  SPDX-License-Identifier: Apache-2.0 */
 #include "render/pass.h"
 
+#include "eye/indirect.h"
 #include "render/tiles.h"
 
 /* Photons whose surface is turned further from the surface at hand than this (its cosine) lie
@@ -19,6 +20,7 @@ typedef struct Pass {
     PhotonMaps maps;
     PhotonReach caustic_reach;
     GatherLimits caustic_limits, global_limits;
+    IrradianceCache *cache;
 } Pass;
 
 /* --- photons -------------------------------------------------------------------------------- */
@@ -105,6 +107,30 @@ static Status make_maps(Pass *pass)
 
 /* --- the film ------------------------------------------------------------------------------- */
 
+static void cache_progress(void *ctx, double fraction)
+{
+    const RenderOptions *options = ctx;
+    RenderProgress progress = {.phase = "indirect light",
+                               .fraction = fraction < 1 ? fraction : 1 - 0x1p-20,
+                               .seconds_left = -1};
+    options->progress(options->progress_ctx, &progress);
+}
+
+/* Fill the irradiance cache for a picture, if it has one. */
+static Status fill_cache(Pass *pass, EyeOptions *eye)
+{
+    const RenderOptions *options = pass->options->render;
+    double started = clock_wall();
+    CacheFilling filling = {.threads = options->threads,
+                            .progress = options->progress ? cache_progress : NULL,
+                            .progress_ctx = (void *)(uintptr_t)options};
+    Status status =
+        indirect_cache_fill(pass->tracer, eye, &filling, pass->diag, pass->stats, &pass->cache);
+    pass->stats->seconds[PHASE_IRRADIANCE] += clock_wall() - started;
+    eye->cache = pass->cache;
+    return status;
+}
+
 static Status fill_film(Pass *pass, Film *film)
 {
     const RenderOptions *options = pass->options->render;
@@ -117,9 +143,11 @@ static Status fill_film(Pass *pass, Film *film)
                       .first_sample = series ? series->first_sample : 0,
                       .caustic = pass->maps.caustic,
                       .global = pass->maps.global,
+                      .irradiance = pass->maps.irradiance,
                       .caustic_reach = &pass->caustic_reach,
                       .caustic_limits = pass->caustic_limits,
                       .global_limits = pass->global_limits};
+    TRY(fill_cache(pass, &eye));
     return tiles_render(pass->tracer, options, &eye, pass->diag, pass->stats, film);
 }
 
@@ -145,6 +173,7 @@ Status pass_render(const Tracer *tracer, const PassOptions *options, Diag *diag,
         out->books = pass.maps.books;
         pass.maps.books = (PhotonBooks){0};
     }
+    irradiance_cache_free(pass.cache);
     photon_reach_done(&pass.caustic_reach);
     photon_maps_done(&pass.maps);
     return status;

@@ -17,6 +17,16 @@ static void set_defaults(Scene *scene)
                                       .adc_bailout = 1.0 / 255};
     scene->settings.photons = (PhotonSettings){
         .spacing = 1, .gather_min = 20, .gather_max = 100, .jitter = 0.4, .autostop = 0.5};
+    scene->settings.radiosity = (RadiositySettings){.count = 200,
+                                                    .nearest_count = 5,
+                                                    .error_bound = 1.8,
+                                                    .low_error_factor = 0.5,
+                                                    .minimum_reuse = 0.015,
+                                                    .maximum_reuse = 0.2,
+                                                    .pretrace_start = 0.08,
+                                                    .pretrace_end = 0.01,
+                                                    .brightness = 1,
+                                                    .adc_bailout = 0.01};
     scene->settings.pms = (PmsSettings){.global_count = 200000, .kernel = KERNEL_CONE};
 }
 

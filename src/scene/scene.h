@@ -123,14 +123,40 @@ typedef enum GatherKernel {
 
 typedef enum GatherShape { GATHER_DISK, GATHER_SPHERE } GatherShape;
 
+/* How indirect light is found from the global map. */
+typedef enum IndirectMethod {
+    INDIRECT_ANY,    /* not said: as INDIRECT_CACHE */
+    INDIRECT_CACHE,  /* final gathering where the irradiance cache needs it */
+    INDIRECT_GATHER, /* final gathering at every point seen */
+    INDIRECT_MAP,    /* by looking at the map: a quick preview */
+    INDIRECT_COUNT
+} IndirectMethod;
+
 /* pms { ... }: what pms does beyond the common language. */
 typedef struct PmsSettings {
     bool has_indirect;        /* gi: indirect light from the global map */
+    IndirectMethod method;    /* gi_method */
     long global_count;        /* photons to emit into the scene for it */
     GatherKernel kernel;
     GatherShape gather_shape;
     Span span;                /* SPAN_NONE: not written */
 } PmsSettings;
+
+/* global_settings { radiosity { ... } }, and what holds without it. */
+typedef struct RadiositySettings {
+    bool is_on;               /* radiosity{} was written */
+    int count;                /* gather rays of a record */
+    int nearest_count;        /* records that cover a point before no more are made */
+    int recursion_limit;      /* diffuse reflections between light and eye; 0: any number */
+    double error_bound, low_error_factor;
+    double minimum_reuse, maximum_reuse; /* of a record's radius, parts of the camera's distance */
+    double pretrace_start, pretrace_end; /* parts of the picture's larger side */
+    double brightness, gray_threshold;
+    double adc_bailout;       /* what counts for less in the picture looks at the map */
+    double max_sample;        /* most that a gather ray may bring, a channel; 0: anything */
+    bool is_always_sampling;
+    Span span;
+} RadiositySettings;
 
 typedef struct SceneSettings {
     double version;           /* language version, 3.7 */
@@ -141,6 +167,7 @@ typedef struct SceneSettings {
     int max_trace_level;
     double adc_bailout;
     PhotonSettings photons;
+    RadiositySettings radiosity;
     PmsSettings pms;
 } SceneSettings;
 

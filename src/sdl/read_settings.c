@@ -150,6 +150,13 @@ static void read_gather_shape(Parser *p, PmsSettings *pms)
     pms->gather_shape = (GatherShape)read_choice(p, "gather", words, 2, "disk, sphere");
 }
 
+static void read_gi_method(Parser *p, PmsSettings *pms)
+{
+    static const char *const words[INDIRECT_COUNT] = {"", "cache", "gather", "map"};
+    pms->method =
+        (IndirectMethod)read_choice(p, "gi_method", words, INDIRECT_COUNT, "cache, gather, map");
+}
+
 void read_pms_settings(Parser *p, PmsSettings *pms)
 {
     Token head = read_open(p);
@@ -158,6 +165,8 @@ void read_pms_settings(Parser *p, PmsSettings *pms)
         Token word = parse_next(p);
         if (read_is_word(&word, "gi"))
             pms->has_indirect = parse_flag(p);
+        else if (read_is_word(&word, "gi_method"))
+            read_gi_method(p, pms);
         else if (read_is_word(&word, "global_photons"))
             pms->global_count = parse_int(p, "global_photons", 1, 2000000000);
         else if (read_is_word(&word, "kernel"))
@@ -166,7 +175,8 @@ void read_pms_settings(Parser *p, PmsSettings *pms)
             read_gather_shape(p, pms);
         else
             parse_fail(p, word.span,
-                       "pms settings are gi, global_photons, kernel and gather; this is none");
+                       "pms settings are gi, gi_method, global_photons, kernel and gather; this is "
+                       "none");
     }
 }
 

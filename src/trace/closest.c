@@ -156,7 +156,7 @@ static const ViewIndex *view_of(const Tracer *tracer, const Ray *ray, RayKind ki
         return tracer->camera_view && view_is_from(tracer->camera_view, ray->o)
                    ? tracer->camera_view
                    : NULL;
-    if (kind != RAY_PHOTON)
+    if (kind != RAY_PHOTON && kind != RAY_LIGHT)
         return NULL;
     for (int i = 0; i < tracer->scene->light_count; i++)
         if (tracer->light_views[i] && view_is_from(tracer->light_views[i], ray->o))
@@ -182,9 +182,9 @@ static bool test_view(ClosestQuery *query, const ViewIndex *view, Ray *ray)
 
 bool trace_closest(TraceThread *thread, const Ray *ray, RayKind kind, Hit *out)
 {
-    static const StatId counters[RAY_KIND_COUNT] = {STAT_CAMERA_RAYS, STAT_REFLECTED_RAYS,
+    static const StatId counters[RAY_KIND_COUNT] = {STAT_CAMERA_RAYS,    STAT_REFLECTED_RAYS,
                                                     STAT_REFRACTED_RAYS, STAT_PHOTON_RAYS,
-                                                    STAT_DIFFUSE_RAYS};
+                                                    STAT_DIFFUSE_RAYS,   STAT_PHOTON_RAYS};
     const Tracer *tracer = thread->tracer;
     thread->stats.count[counters[kind]]++;
     ClosestQuery query;
@@ -206,6 +206,26 @@ bool trace_closest(TraceThread *thread, const Ray *ray, RayKind kind, Hit *out)
         keep_place(&query);
     fill_hit(&query, ray, out);
     return true;
+}
+
+bool trace_object(TraceThread *thread, const Ray *ray, uint32_t object, Hit *out)
+{
+    ClosestQuery query;
+    query.thread = thread;
+    query.count = 1;
+    if (!shape_closest(thread->tracer->objects[object].shape, ray, thread->shapes,
+                       &query.found[0].crossing))
+        return false;
+    query.found[0].object = object;
+    fill_hit(&query, ray, out);
+    return true;
+}
+
+bool tracer_is_opaque_solid(const Tracer *tracer, uint32_t object)
+{
+    const TracedObject *traced = &tracer->objects[object];
+    return traced->is_closed && !traced->may_transmit &&
+           !shape_is_inside(traced->shape, tracer->scene->camera.location);
 }
 
 /* One error keeps the surface behind the new ray; the other is for rounding the sum. */

@@ -123,3 +123,26 @@ bool surface_has_brilliance(const SurfaceSample *s)
             return true;
     return false;
 }
+
+Rgb surface_diffuse_even(const SurfaceSample *s)
+{
+    Rgb sum = RGB_BLACK;
+    for (int i = 0; i < s->layer_count; i++) {
+        float brilliance = s->layers[i].finish->brilliance;
+        sum = rgb_mad(sum, 2 / (brilliance + 1), layer_diffuse(&s->layers[i]));
+    }
+    return sum;
+}
+
+Rgb surface_diffuse_back(const SurfaceSample *s)
+{
+    Rgb sum = RGB_BLACK;
+    bool is_double = s->surface->is_double_illuminated;
+    for (int i = 0; i < s->layer_count; i++) {
+        const SurfaceLayer *layer = &s->layers[i];
+        float diffuse = is_double ? layer->finish->diffuse : layer->finish->diffuse_back;
+        sum =
+            rgb_add(sum, rgb_scale(rgb_mul(layer->above, layer->color), layer->opacity * diffuse));
+    }
+    return sum;
+}

@@ -36,13 +36,14 @@ void trace_thread_done(TraceThread *thread);
 /* Camera, refracted and photon rays do not see no_image objects, reflected ones do not see
  * no_reflection objects, photons do not see no_shadow objects either.  What follows a reflected ray
  * through glass is a reflected ray.  Diffuse rays, and what follows them, see what shadow rays
- * meet: all but no_shadow objects. */
+ * meet: all but no_shadow objects, and of these not what is no_radiosity either. */
 typedef enum RayKind {
     RAY_CAMERA,
     RAY_REFLECTED,
     RAY_REFRACTED,
     RAY_PHOTON,
     RAY_DIFFUSE, /* gathers the light that a diffuse surface reflects */
+    RAY_LIGHT,   /* a photon for the global map: sees what diffuse rays see */
     RAY_KIND_COUNT
 } RayKind;
 
@@ -73,6 +74,13 @@ typedef struct Hit {
  * Surfaces of several objects closer together than the error of their t: the object written
  * first.  Counts the ray in the thread's statistics under its kind. */
 bool trace_closest(TraceThread *thread, const Ray *ray, RayKind kind, Hit *out);
+
+/* Find the nearest surface of one object with ray->tmin < t < ray->tmax, whoever sees it. */
+bool trace_object(TraceThread *thread, const Ray *ray, uint32_t object, Hit *out);
+
+/* Return true if nothing but a surface of the object itself can be seen from inside it: it is made
+ * of closed solids that let no light through, and the camera is outside. */
+bool tracer_is_opaque_solid(const Tracer *tracer, uint32_t object);
 
 /* Return the ray that leaves a surface point in unit direction d: origin pushed off the surface,
  * to the side d points to, by more than the point's error bound; (0, infinity). */
@@ -212,5 +220,21 @@ Rgb surface_diffuse_from(const SurfaceSample *s, V3 from);
 
 /* Return true if that depends on the direction. */
 bool surface_has_brilliance(const SurfaceSample *s);
+/* Return the diffuse reflectance for light from all directions alike. */
+Rgb surface_diffuse_even(const SurfaceSample *s);
+
+/* Return how much of the light that comes to the other side shows on this one. */
+Rgb surface_diffuse_back(const SurfaceSample *s);
+
+/* Return what a surface gives off: emission, ambient light where it counts, and in unlit pictures
+ * the pigment itself. */
+Rgb surface_glow(const Tracer *tracer, const SurfaceSample *s);
+
+/* Return what the sky spheres show in a direction; *seen is the part of the background that shows
+ * through them. */
+Rgb sky_glow(const Tracer *tracer, V3 direction, Rgb *seen);
+
+/* Return the light that comes to surfaces from the sky spheres and the background. */
+Rgb sky_light_from(const Tracer *tracer, V3 direction);
 
 #endif

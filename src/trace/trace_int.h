@@ -23,6 +23,7 @@ typedef struct TracedObject {
     uint8_t shadow;         /* ShadowKind */
     bool is_hidden[RAY_KIND_COUNT];
     bool is_closed; /* made of closed solids: normals tell entering from leaving */
+    bool may_transmit; /* some surface of it lets light through */
 } TracedObject;
 
 /* Objects grouped for bundles of shadow rays. */

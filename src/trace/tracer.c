@@ -12,7 +12,7 @@ enum { VIEW_OBJECTS_MAX = 1024, VIEW_LIGHTS_MAX = 32 };
 
 /* Which surfaces the leaves of a shape have. */
 typedef struct LeafSummary {
-    bool may_transmit, has_filter, has_filter_besides_targets, is_closed, has_media;
+    bool may_transmit, has_filter, has_filter_besides_targets, is_closed, has_media, no_radiosity;
 } LeafSummary;
 
 static bool is_refracting_target(const Surface *surface)
@@ -50,6 +50,7 @@ static void summarize(const Tracer *tracer, const Shape *shape, LeafSummary *sum
     sum->has_filter_besides_targets |= is_filter && !is_refracting_target(surface);
     sum->may_transmit |= surface->may_transmit;
     sum->has_media |= surface->interior->is_hollow && surface->interior->media_count > 0;
+    sum->no_radiosity &= surface->no_radiosity;
 }
 
 /* Return the largest factor by which the transform stretches: exact when its columns are at
@@ -91,16 +92,18 @@ static void describe_object(Tracer *tracer, uint32_t i)
 {
     const Object *object = &tracer->scene->objects[i];
     TracedObject *out = &tracer->objects[i];
-    LeafSummary sum = {.is_closed = true};
+    LeafSummary sum = {.is_closed = true, .no_radiosity = true};
     summarize(tracer, object->shape, &sum);
     out->shape = object->shape;
     out->is_closed = sum.is_closed;
+    out->may_transmit = sum.may_transmit;
     set_ball(object, out);
     out->is_hidden[RAY_CAMERA] = object->no_image;
     out->is_hidden[RAY_REFRACTED] = object->no_image;
     out->is_hidden[RAY_PHOTON] = object->no_image || object->no_shadow;
     out->is_hidden[RAY_REFLECTED] = object->no_reflection;
-    out->is_hidden[RAY_DIFFUSE] = object->no_shadow;
+    out->is_hidden[RAY_DIFFUSE] = object->no_shadow || sum.no_radiosity;
+    out->is_hidden[RAY_LIGHT] = out->is_hidden[RAY_DIFFUSE];
     if (object->no_shadow)
         out->shadow = SHADOW_NONE;
     else if (!sum.has_filter || !plan_has(tracer->plan, FEATURE_TRANSPARENT_SHADOWS))

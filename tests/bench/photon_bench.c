@@ -288,14 +288,14 @@ static const char glass_mesh[] =
     "#declare J = J + 1; #end #declare I = I + 1; #end\n"
     "  inside_vector y " GLASS "}\n";
 
-static const char diffuse_box[] =
-    "#version 3.7;\n"
-    "global_settings { assumed_gamma 1 max_trace_level 20 pms { gi on global_photons 200000 } }\n"
-    "light_source { <0,1.8,0> rgb 1 }\n"
-    "#default { finish { ambient 0 diffuse 0.8 } }\n"
-    "box { <-2,-2,-2>, <2,2,2> hollow pigment { rgb <1,0.9,0.8> } }\n"
-    "box { <-1,-2,-1>, <0,0,0.5> rotate 20*y pigment { rgb 1 } }\n"
-    "sphere { <0.8,-1.3,0.5>, 0.7 pigment { rgb <0.5,0.7,1> } }\n";
+static const char diffuse_box[] = "#version 3.7;\n"
+                                  "global_settings { assumed_gamma 1 max_trace_level 20 pms { gi "
+                                  "on gi_method map global_photons 200000 } }\n"
+                                  "light_source { <0,1.8,0> rgb 1 }\n"
+                                  "#default { finish { ambient 0 diffuse 0.8 } }\n"
+                                  "box { <-2,-2,-2>, <2,2,2> hollow pigment { rgb <1,0.9,0.8> } }\n"
+                                  "box { <-1,-2,-1>, <0,0,0.5> rotate 20*y pigment { rgb 1 } }\n"
+                                  "sphere { <0.8,-1.3,0.5>, 0.7 pigment { rgb <0.5,0.7,1> } }\n";
 
 int main(void)
 {

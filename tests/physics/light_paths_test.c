@@ -21,7 +21,7 @@ static void maps_are_made_when_called_for(void **state)
     (void)state;
 #define BALL "sphere { 0, 1 pigment { rgbt 1 } finish { reflection 0.1 } interior { ior 1.5 } "
 #define ON "global_settings { assumed_gamma 1 photons { count 2000 } }\n"
-#define GI "global_settings { assumed_gamma 1 pms { gi on global_photons 2000 } }\n"
+#define GI "global_settings { assumed_gamma 1 pms { gi on gi_method map global_photons 2000 } }\n"
     static const struct {
         const char *text;
         bool caustic, global;
@@ -128,7 +128,7 @@ static void global_map_holds_all_hits_but_the_first(void **state)
         double rho = tenths / 10.0;
         snprintf(text, sizeof text,
                  "global_settings { assumed_gamma 1 max_trace_level 400\n"
-                 "  pms { gi on global_photons 50000 } }\n"
+                 "  pms { gi on gi_method map global_photons 50000 } }\n"
                  "light_source { <0.1,0.2,0.3> rgb 1 }\n"
                  "sphere { 0, 1 hollow pigment { rgb 1 } finish { ambient 0 diffuse %g } }\n",
                  rho);
@@ -145,7 +145,7 @@ static void global_map_holds_all_hits_but_the_first(void **state)
     }
     LitScene lit; /* a lone floor has direct light only */
     lit_make(&lit,
-             "global_settings { assumed_gamma 1 pms { gi on global_photons 5000 } }\n"
+             "global_settings { assumed_gamma 1 pms { gi on gi_method map global_photons 5000 } }\n"
              "light_source { <0,2,0> rgb 1 }\n"
              "box { <-2,-1,-2>, <2,0,2> pigment { rgb 1 } finish { ambient 0 diffuse 1 } }\n",
              1, 1);
@@ -217,7 +217,8 @@ static void make_room(LitScene *lit, const Ball *ball)
     char text[1024];
     snprintf(text, sizeof text,
              "global_settings { assumed_gamma 1 max_trace_level 300 adc_bailout 1e-5\n"
-             "  photons { count 200000 } pms { gi on global_photons 200000 } }\n" LAMP_AT
+             "  photons { count 200000 } pms { gi on gi_method map global_photons 200000 } }\n"
+             LAMP_AT
              "sphere { 0, 2 hollow pigment { rgb <%g,%g,%g> } finish { ambient 0 diffuse 1 } }\n"
              "sphere { <%g,%g,%g>, %g %s }\n",
              rho[0], rho[1], rho[2], ball->center.x, ball->center.y, ball->center.z, ball->radius,
@@ -368,7 +369,7 @@ static void the_eye_adds_three_parts(void **state)
         snprintf(text, sizeof text,
                  "#version 3.7;\n"
                  "global_settings { assumed_gamma 1 max_trace_level 200 photons { count 200000 }\n"
-                 "  pms { gi on global_photons 200000 } }\n"
+                 "  pms { gi on gi_method map global_photons 200000 } }\n"
                  "camera { location <0.6,0,0> direction z right 4*x up 4*y }\n"
                  "light_source { <0,0,0> rgb 1 }\n"
                  "sphere { 0, 1 hollow pigment { rgb 1 } finish { ambient 0 diffuse 0.5 } }\n"

@@ -39,7 +39,7 @@ static void check_sphere(double rho, double scale, const char *light, double exp
     char text[1024];
     snprintf(text, sizeof text,
              "global_settings { assumed_gamma 1 max_trace_level 200\n"
-             "  pms { gi on global_photons 200000 } }\n"
+             "  pms { gi on gi_method map global_photons 200000 } }\n"
              "light_source { <0,0,0> %s }\n"
              "sphere { 0, %g hollow pigment { rgb 1 } finish { ambient 0 diffuse %g } }\n",
              light, scale, rho);
@@ -103,7 +103,7 @@ static void no_path_counts_twice(void **state)
         snprintf(text, sizeof text,
                  "#version 3.7;\n"
                  "global_settings { assumed_gamma 1 max_trace_level 200 photons { count 100000 }\n"
-                 "  pms { gi on global_photons 200000 } }\n"
+                 "  pms { gi on gi_method map global_photons 200000 } }\n"
                  "light_source { <0,0,0> rgb 1 }\n"
                  "sphere { 0, 1 hollow pigment { rgb 1 } finish { ambient 0 diffuse 0.5 } }\n"
                  "sphere { 0, 0.5 pigment { rgbt 1 } finish { ambient 0 diffuse 0 }\n"
@@ -139,11 +139,12 @@ static void black_walls_store_nothing(void **state)
 {
     (void)state;
     LitScene lit;
-    lit_make(&lit,
-             "global_settings { assumed_gamma 1 pms { gi on global_photons 10000 } }\n"
-             "light_source { 0 rgb 1 }\n"
-             "sphere { 0, 1 hollow pigment { rgb 0 } finish { ambient 0 diffuse 0 } }\n",
-             1, 1);
+    lit_make(
+        &lit,
+        "global_settings { assumed_gamma 1 pms { gi on gi_method map global_photons 10000 } }\n"
+        "light_source { 0 rgb 1 }\n"
+        "sphere { 0, 1 hollow pigment { rgb 0 } finish { ambient 0 diffuse 0 } }\n",
+        1, 1);
     assert_null(lit.maps.global);
     assert_non_null(strstr(lit.messages, "no global map"));
     lit_done(&lit);

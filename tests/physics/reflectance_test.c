@@ -147,7 +147,7 @@ static void brilliance_weighs_indirect_light(void **state)
         char text[1024];
         snprintf(text, sizeof text,
                  "global_settings { assumed_gamma 1 max_trace_level 200\n"
-                 "  pms { gi on global_photons 200000 } }\n"
+                 "  pms { gi on gi_method map global_photons 200000 } }\n"
                  "camera { location <0.6,0,0> direction z right 4*x up 4*y }\n"
                  "light_source { 0 rgb 1 }\n"
                  "sphere { 0, 1 hollow pigment { rgb 1 } finish { ambient 0 diffuse %g\n"

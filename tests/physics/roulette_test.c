@@ -53,11 +53,14 @@ static void make_ball(LitScene *lit, const Wall *w, int level, int photons)
     char text[1024];
     snprintf(text, sizeof text,
              "global_settings { assumed_gamma 1 max_trace_level %d adc_bailout 1e-5\n"
-             "  pms { gi on global_photons %d } }\n" LAMP
+             "  pms { gi on gi_method map global_photons %d } }\n" LAMP
              "sphere { 0, 1 hollow pigment { rgb <%g,%g,%g> }\n"
              "  finish { ambient 0 diffuse 1 reflection <%g,%g,%g> } }\n",
              level, photons, w->d[0], w->d[1], w->d[2], w->s[0], w->s[1], w->s[2]);
-    lit_make(lit, text, 2, 11);
+    lit_read(lit, text, 2, 11);
+    lit->scene->settings.radiosity.recursion_limit = level; /* of diffuse reflections */
+    assert_int_equal(photon_pass(lit->tracer, &lit->options, &lit->diag, &lit->stats, &lit->maps),
+                     OK);
 }
 
 /* Row S5: the share that is absorbed is 1 - P_r, that of the diffuse branch P_D; both to within a
@@ -102,15 +105,18 @@ static void power_of_the_diffuse_branch(void **state)
             expected[c] = FLUX / PHOTONS * walls[i].d[c] / p_diffuse;
         LitScene lit;
         make_ball(&lit, &walls[i], 2, PHOTONS);
-        double step = rgbe_step(expected), count = (double)photon_map_count(lit.maps.global);
+        double step = rgbe_step(expected), count = 0;
         for (size_t k = 0; k < photon_map_count(lit.maps.global); k++) {
             Rgb power = lit_photon_power(lit.maps.global, k);
             double channel[3] = {(double)power.r, (double)power.g, (double)power.b};
-            for (int c = 0; c < 3; c++) {
-                assert_true(fabs(channel[c] - expected[c]) <= step);
+            bool is_such = true; /* others were mirrored once more after it */
+            for (int c = 0; c < 3; c++)
+                is_such = is_such && fabs(channel[c] - expected[c]) <= step;
+            count += is_such;
+            for (int c = 0; c < 3 && is_such; c++)
                 sum[c] += channel[c];
-            }
         }
+        assert_true(count > p_diffuse * PHOTONS - MISSES);
         /* Rounding to steps has a standard deviation of half a step at most. */
         for (int c = 0; c < 3; c++)
             assert_true(fabs(sum[c] / count - expected[c]) < 4 * step / 2 / sqrt(count));
@@ -236,7 +242,7 @@ static void black_surfaces_absorb(void **state)
     lit_done(&lit);
     lit_make(&lit,
              "global_settings { assumed_gamma 1 max_trace_level 20\n"
-             "  pms { gi on global_photons 20000 } }\n"
+             "  pms { gi on gi_method map global_photons 20000 } }\n"
              "light_source { <0,1,0> rgb 1 }\n"
              "box { <-2,-0.1,-2>, <2,0,2> pigment { rgb 1 } finish { ambient 0 diffuse 1 } }\n"
              "box { <-2,-2,-2>, <2,4,2> hollow pigment { rgb 0 } finish { ambient 0 diffuse 1\n"

@@ -1,0 +1,339 @@
+/* Final gathering.
+ *
+ * The hemisphere is divided into cells of equal cosine-weighted size.  Each gets one ray, and
+ * those where photons came from get more; a cell counts the mean of its rays, so that the number
+ * of rays in it, which does not depend on what they see, changes the noise and nothing else.  The
+ * gradients come from the differences between cells: with a step to the side the border of two
+ * cells moves by the step over the distance of the nearer.
+ *
+ * A ray that ends where the irradiance was estimated over a disk as large as the ray is long would
+ * show that disk's blur: there the light is found anew, by shadow rays and a small gathering.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "eye/final_gather.h"
+
+#include "base/work.h"
+#include "math/sample.h"
+
+#include <string.h>
+
+enum {
+    CELLS_MAX = 4096,
+    ROWS_MAX = 64,
+    GUIDED_PART = 3,    /* one in so many rays goes where photons came from */
+    GUIDE_PHOTONS = 64, /* looked at for that */
+    NEAR_RAYS = 24,     /* of the small gathering */
+    CHAIN_MAX = 64      /* mirrors and panes a ray may pass */
+};
+
+/* The hemisphere in cells: rows from the normal down, columns around it. */
+typedef struct Cells {
+    int rows, columns;
+    double azimuth;            /* where the first column begins, radians */
+    V3 x, y, n;                /* the frame */
+    float light[CELLS_MAX][3]; /* mean of the cell's rays */
+    float distance[CELLS_MAX]; /* the least of them */
+    uint16_t more[CELLS_MAX];  /* guided rays */
+} Cells;
+
+/* A gather ray on its way through mirrors and glass. */
+typedef struct GatherRay {
+    Ray ray;
+    Interiors inside;
+    Rgb weight;
+    int depth; /* of the gathering it belongs to */
+} GatherRay;
+
+static void gather_at(EyeThread *eye, const ShapePoint *at, V3 n, const Interiors *inside, int rays,
+                      int depth, GatheredLight *out);
+
+/* --- what a ray brings --------------------------------------------------------------------- */
+
+/* The light of one side of a surface, found anew instead of looked up. */
+static Rgb light_nearby(EyeThread *eye, const SurfaceSample *s, const Interiors *inside,
+                        Rgb diffuse, int depth)
+{
+    GatheredLight gathered;
+    Rgb light = RGB_BLACK;
+    if (plan_has(eye->plan, FEATURE_LIGHTS))
+        light = direct_light(eye, s, false);
+    if (eye->options.caustic)
+        light = rgb_add(light, caustic_light(eye, s));
+    gather_at(eye, &s->at, s->ng, inside, NEAR_RAYS, depth + 1, &gathered);
+    return rgb_add(light, rgb_mul(diffuse, gathered.irradiance));
+}
+
+/* What a surface met after t sends on of the light that comes to it. */
+static Rgb reflected_light(EyeThread *eye, const GatherRay *way, const SurfaceSample *s, double t)
+{
+    Rgb diffuse = surface_diffuse_even(s), back = surface_diffuse_back(s), light = RGB_BLACK;
+    double radius;
+    if (!rgb_is_black(diffuse)) {
+        Rgb e = irradiance_at(eye->options.irradiance, &eye->trace, eye->gather, &s->at, s->ng,
+                              &radius);
+        eye->trace.stats.count[STAT_LOOKUPS]++;
+        if (t < radius && way->depth == 0)
+            return light_nearby(eye, s, &way->inside, diffuse, way->depth);
+        light = rgb_mul(diffuse, e);
+    }
+    if (!rgb_is_black(back)) {
+        Rgb e = irradiance_at(eye->options.irradiance, &eye->trace, eye->gather, &s->at,
+                              v3_neg(s->ng), &radius);
+        light = rgb_add(light, rgb_mul(back, e));
+    }
+    return light;
+}
+
+static float part_of(Rgb share)
+{
+    return rgb_max_abs(share);
+}
+
+/* Turn the ray into one of those that go on through the surface or off it, with the chance of how
+ * much they bring; returns false if it ends there. */
+static bool go_on(EyeThread *eye, GatherRay *way, const SurfaceSample *s)
+{
+    Rgb through = s->is_total_reflection ? RGB_WHITE : s->filter;
+    float transmit = s->has_transmission ? part_of(through) : 0, total = transmit;
+    for (int i = 0; i < s->layer_count; i++)
+        total += part_of(s->layers[i].reflect);
+    float most = fminf(1, total), x = rng_float(&eye->rng);
+    if (!(x < most))
+        return false;
+    float scale = total / most; /* a share of part p is taken with the chance p / scale */
+    x *= scale;
+    if (x < transmit) {
+        way->weight = rgb_mul(way->weight, rgb_scale(through, scale / transmit));
+        if (!s->is_total_reflection) {
+            way->inside = s->inside_after;
+            way->weight = rgb_scale(way->weight, (float)(s->ior_ratio * s->ior_ratio));
+        }
+        way->ray = trace_ray_from(&s->at, s->transmit_dir);
+        return true;
+    }
+    x -= transmit;
+    for (int i = 0; i < s->layer_count; i++) {
+        const SurfaceLayer *layer = &s->layers[i];
+        float part = part_of(layer->reflect);
+        if (x < part) {
+            way->weight = rgb_mul(way->weight, rgb_scale(layer->reflect, scale / part));
+            way->ray = trace_ray_from(&s->at, layer->reflect_dir);
+            return true;
+        }
+        x -= part;
+    }
+    return false;
+}
+
+static void fade(GatherRay *way, double t)
+{
+    if (way->inside.count > 0)
+        way->weight =
+            rgb_mul(way->weight, interior_fade(way->inside.in[way->inside.count - 1], t, false));
+}
+
+static Rgb limited(Rgb light, double most)
+{
+    double above = (double)rgb_max(light) / most;
+    return most > 0 && above > 1 ? rgb_scale(light, (float)(1 / above)) : light;
+}
+
+/* Follow a gather ray; *distance is that of the first surface, infinite if there is none. */
+static Rgb follow(EyeThread *eye, GatherRay *way, double *distance)
+{
+    Rgb sum = RGB_BLACK;
+    double length = 0;
+    *distance = INFINITY;
+    for (int i = 0; i < CHAIN_MAX && !work_interrupted; i++) {
+        Hit hit;
+        SurfaceSample s;
+        if (!trace_closest(&eye->trace, &way->ray, RAY_DIFFUSE, &hit)) {
+            if (plan_has(eye->plan, FEATURE_SKY_LIGHT)) {
+                Rgb sky = sky_light_from(eye->trace.tracer, way->ray.d);
+                sum = rgb_add(sum, rgb_mul(way->weight, sky));
+            }
+            break;
+        }
+        fade(way, hit.t);
+        length += hit.t;
+        if (i == 0)
+            *distance = hit.t;
+        surface_sample(&eye->trace, &way->ray, &hit, &way->inside, &s);
+        Rgb light =
+            rgb_add(surface_glow(eye->trace.tracer, &s), reflected_light(eye, way, &s, length));
+        sum = rgb_add(sum, rgb_mul(way->weight, light));
+        if (!go_on(eye, way, &s))
+            break;
+    }
+    return limited(sum, eye->scene->settings.radiosity.max_sample);
+}
+
+/* --- the cells ------------------------------------------------------------------------------ */
+
+static void cells_init(Cells *cells, EyeThread *eye, V3 n, int rays)
+{
+    double rows = sqrt((double)rays / PMS_PI);
+    cells->rows = rows < 2 ? 2 : rows > ROWS_MAX ? ROWS_MAX : (int)lrint(rows);
+    cells->columns = (int)lrint(fmax(4, (double)rays / cells->rows));
+    if (cells->columns > CELLS_MAX / cells->rows)
+        cells->columns = CELLS_MAX / cells->rows;
+    cells->azimuth = 2 * PMS_PI * rng_double(&eye->rng);
+    cells->n = n;
+    v3_frame(n, &cells->x, &cells->y);
+    memset(cells->more, 0, (size_t)(cells->rows * cells->columns) * sizeof *cells->more);
+}
+
+/* The cell a direction above the surface lies in. */
+static int cell_of(const Cells *cells, V3 d, double height)
+{
+    double angle = atan2(v3_dot(d, cells->y), v3_dot(d, cells->x)) - cells->azimuth;
+    angle -= floor(angle / (2 * PMS_PI)) * 2 * PMS_PI;
+    int row = (int)((1 - height * height) * cells->rows);
+    int column = (int)(angle / (2 * PMS_PI) * cells->columns);
+    row = row < cells->rows ? row : cells->rows - 1;
+    column = column < cells->columns ? column : cells->columns - 1;
+    return row * cells->columns + column;
+}
+
+/* Give out rays to the cells that the light of photons nearby came from, in proportion. */
+static void guide(Cells *cells, EyeThread *eye, const ShapePoint *at, int rays)
+{
+    const GatheredPhoton *photons;
+    GatherLimits limits = eye->options.global_limits;
+    limits.max_photons = GUIDE_PHOTONS;
+    limits.min_photons = 0;
+    limits.max_radius = INFINITY;
+    int count =
+        photon_gather_list(eye->options.global, at->p, cells->n, &limits, eye->gather, &photons);
+    float sum = 0, seen = 0;
+    for (int i = 0; i < count; i++)
+        sum += rgb_sum(photons[i].irradiance);
+    if (!(sum > 0))
+        return;
+    float next = rng_float(&eye->rng) * sum / (float)rays, step = sum / (float)rays;
+    for (int i = 0; i < count; i++) {
+        double height = v3_dot(photons[i].from, cells->n);
+        seen += rgb_sum(photons[i].irradiance);
+        for (; next < seen; next += step)
+            if (height > 0)
+                cells->more[cell_of(cells, photons[i].from, height)]++;
+    }
+}
+
+/* A direction in a cell, by two numbers in [0,1). */
+static V3 cell_direction(const Cells *cells, int row, int column, double u, double v)
+{
+    double sine2 = (row + u) / cells->rows, sine = sqrt(sine2), cosine = sqrt(1 - sine2);
+    double angle = cells->azimuth + 2 * PMS_PI * (column + v) / cells->columns;
+    V3 d = v3_scale(cells->n, cosine);
+    return v3_mad(v3_mad(d, sine * cos(angle), cells->x), sine * sin(angle), cells->y);
+}
+
+static void gather_cell(Cells *cells, EyeThread *eye, const ShapePoint *at, V3 ng,
+                        const Interiors *inside, int cell, int depth)
+{
+    int rays = 1 + cells->more[cell], row = cell / cells->columns, column = cell % cells->columns;
+    uint64_t key = rays > 1 ? rng_u64(&eye->rng) : 0;
+    float *light = cells->light[cell];
+    double nearest = INFINITY;
+    light[0] = light[1] = light[2] = 0;
+    for (int i = 0; i < rays; i++) {
+        V2 u = rays > 1 ? sample_2d((uint32_t)i, key) : (V2){rng_double(&eye->rng), 0};
+        if (rays == 1)
+            u.v = rng_double(&eye->rng);
+        V3 d = cell_direction(cells, row, column, u.u, u.v);
+        if (!(v3_dot(d, ng) > 0))
+            continue;
+        GatherRay way = {
+            .ray = trace_ray_from(at, d), .inside = *inside, .weight = RGB_WHITE, .depth = depth};
+        double distance;
+        Rgb found = follow(eye, &way, &distance);
+        light[0] += found.r / (float)rays;
+        light[1] += found.g / (float)rays;
+        light[2] += found.b / (float)rays;
+        nearest = fmin(nearest, distance);
+    }
+    cells->distance[cell] = (float)nearest;
+}
+
+/* --- what they add up to ---------------------------------------------------------------------- */
+
+static V3 around(const Cells *cells, double column)
+{
+    double angle = cells->azimuth + 2 * PMS_PI * column / cells->columns;
+    return v3_add(v3_scale(cells->x, cos(angle)), v3_scale(cells->y, sin(angle)));
+}
+
+static void add_vector(float out[3], V3 v, double scale)
+{
+    out[0] += (float)(scale * v.x);
+    out[1] += (float)(scale * v.y);
+    out[2] += (float)(scale * v.z);
+}
+
+/* The least distance of two cells beside each other. */
+static double step_distance(const Cells *cells, int a, int b)
+{
+    return (double)fminf(cells->distance[a], cells->distance[b]);
+}
+
+/* The gradients' part of a cell: a turn of the normal towards the cell raises its cosine; with a
+ * step the borders to the cells inside and before it move, the faster the nearer they are. */
+static void add_gradients(const Cells *cells, int row, int column, GatheredLight *out)
+{
+    int columns = cells->columns, cell = row * columns + column;
+    int inner = cell - columns, before = row * columns + (column + columns - 1) % columns;
+    double middle2 = (row + 0.5) / cells->rows, low2 = (double)row / cells->rows;
+    double low = sqrt(low2), high = sqrt((double)(row + 1) / cells->rows);
+    double tangent = sqrt(middle2 / (1 - middle2));
+    V3 u = around(cells, column + 0.5), v = v3_cross(cells->n, u);
+    V3 w = v3_cross(cells->n, around(cells, column));
+    double inward =
+        row > 0 ? 2 * low * (1 - low2) / columns / step_distance(cells, cell, inner) : 0;
+    double sideward = (high - low) / PMS_PI / step_distance(cells, cell, before);
+    for (int c = 0; c < 3; c++) {
+        double light = (double)cells->light[cell][c];
+        add_vector(out->turn[c], v, tangent * light / (cells->rows * columns));
+        if (row > 0)
+            add_vector(out->shift[c], u, inward * (light - (double)cells->light[inner][c]));
+        add_vector(out->shift[c], w, sideward * (light - (double)cells->light[before][c]));
+    }
+}
+
+static void sum_cells(const Cells *cells, bool has_gradients, GatheredLight *out)
+{
+    int count = cells->rows * cells->columns;
+    double sum[3] = {0}, inverse = 0;
+    *out = (GatheredLight){.nearest = INFINITY};
+    for (int i = 0; i < count; i++) {
+        for (int c = 0; c < 3; c++)
+            sum[c] += (double)cells->light[i][c];
+        inverse += 1 / (double)cells->distance[i];
+        out->nearest = fmin(out->nearest, (double)cells->distance[i]);
+    }
+    out->irradiance =
+        rgb((float)(sum[0] / count), (float)(sum[1] / count), (float)(sum[2] / count));
+    out->distance = count / inverse;
+    for (int i = 0; has_gradients && i < count; i++)
+        add_gradients(cells, i / cells->columns, i % cells->columns, out);
+}
+
+static void gather_at(EyeThread *eye, const ShapePoint *at, V3 n, const Interiors *inside, int rays,
+                      int depth, GatheredLight *out)
+{
+    Cells cells;
+    V3 ng = v3_dot(at->ng, n) < 0 ? v3_neg(at->ng) : at->ng;
+    int guided = eye->options.global ? rays / GUIDED_PART : 0;
+    cells_init(&cells, eye, n, rays - guided);
+    eye->trace.stats.count[STAT_FINAL_GATHERS]++;
+    if (guided > 0)
+        guide(&cells, eye, at, guided);
+    for (int i = 0; i < cells.rows * cells.columns; i++)
+        gather_cell(&cells, eye, at, ng, inside, i, depth);
+    sum_cells(&cells, depth == 0, out);
+}
+
+void final_gather(EyeThread *eye, const ShapePoint *at, V3 n, const Interiors *inside, int rays,
+                  GatheredLight *out)
+{
+    gather_at(eye, at, n, inside, rays, 0, out);
+}

@@ -1,0 +1,27 @@
+/* Final gathering: the light that comes to a point from all around, by rays that look up the
+ * irradiance where they end.  SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_EYE_FINAL_GATHER_H
+#define PMS_EYE_FINAL_GATHER_H
+
+#include "eye/eye_int.h"
+
+/* Irradiance at a point and how it changes around it. */
+typedef struct GatheredLight {
+    Rgb irradiance;
+    double distance; /* harmonic mean of those to what was seen, scene units; may be infinite */
+    double nearest;  /* the least of them */
+    float turn[3][3];  /* per channel: change with a turn of the normal, as a vector to be
+                          multiplied with the axis times the angle */
+    float shift[3][3]; /* per channel: change with a step along the surface, per scene unit */
+} GatheredLight;
+
+/* Gather the light that comes to a point without a light source's own: what surfaces and the sky
+ * give off or send on.
+ *
+ * at      the point; rays leave it on the side of n, and bring nothing from below its surface.
+ * inside  the interiors there.
+ * rays    about how many; those of its light's photons guide a part of them. */
+void final_gather(EyeThread *eye, const ShapePoint *at, V3 n, const Interiors *inside, int rays,
+                  GatheredLight *out);
+
+#endif

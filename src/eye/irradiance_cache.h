@@ -1,0 +1,52 @@
+/* The irradiance cache: gathered light kept where it was gathered, for points nearby.
+ *
+ * A record holds within an error that grows with the distance, in units of the harmonic mean
+ * distance of what it sees, and with the turn of the normal; gradients take out the first order of
+ * it.  The cache is written between rounds only, in an order of the caller's, and read by any
+ * thread: what is found depends on nothing else.  SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_EYE_IRRADIANCE_CACHE_H
+#define PMS_EYE_IRRADIANCE_CACHE_H
+
+#include "base/diag.h"
+#include "eye/final_gather.h"
+
+typedef struct IrradianceRecord {
+    V3 p, n;       /* n unit, the side it is for */
+    double radius; /* scene units: where the error of distance is 1 */
+    GatheredLight light;
+} IrradianceRecord;
+
+/* Set the radius from what was gathered: the harmonic mean distance, less where the light changes
+ * faster than that, within [least, most]. */
+void irradiance_record_init(IrradianceRecord *record, V3 p, V3 n, const GatheredLight *light,
+                            double least, double most);
+
+/* The weighted sum of records at a point. */
+typedef struct CacheRead {
+    V3 p, n;
+    double error; /* largest of a record that is used */
+    int count;    /* records used */
+    double weight, sum[3];
+} CacheRead;
+
+/* Add a record if it holds at the point. */
+void cache_read_add(CacheRead *read, const IrradianceRecord *record);
+
+/* Return the irradiance read; black if count is 0. */
+Rgb cache_read_irradiance(const CacheRead *read);
+
+typedef struct IrradianceCache IrradianceCache;
+
+/* Make an empty cache; `reach` is the largest error records will be read with.  Free with
+ * irradiance_cache_free. */
+IrradianceCache *irradiance_cache_new(V3 center, double reach); /* NULL when memory is out */
+void irradiance_cache_free(IrradianceCache *cache);
+size_t irradiance_cache_count(const IrradianceCache *cache);
+
+/* Add a record.  ERR_MEMORY or OK.  Nothing may read meanwhile. */
+Status irradiance_cache_add(IrradianceCache *cache, const IrradianceRecord *record, Diag *diag);
+
+/* Add all records that hold at read->p to a read.  Any thread. */
+void irradiance_cache_read(const IrradianceCache *cache, CacheRead *read);
+
+#endif

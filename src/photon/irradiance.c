@@ -1,0 +1,330 @@
+/* Irradiance computed ahead.
+ *
+ * Near edges and corners the disk around a place is not all surface, and behind a thin wall it is
+ * the next room.  Rays along the surface tell: where the disk is not clear, or the photons in it
+ * lie to one side, its area is measured by trial, and photons that cannot be seen from the place
+ * are left out.  SPDX-License-Identifier: Apache-2.0 */
+#include "photon/irradiance.h"
+
+#include "base/mem.h"
+#include "base/work.h"
+#include "math/sample.h"
+#include "photon/gather.h"
+
+enum {
+    PLACE_PHOTONS = 50, /* of an estimate */
+    CLEAR_RAYS = 8,     /* along the surface, to see whether something stands on it */
+    AREA_RAYS = 48,     /* to measure the disk */
+    LOOKUP_PLACES = 6,  /* nearest places that are tried */
+    CHUNK_PLACES = 256,
+    IRRADIANCE_RNG = 0x697272,
+    FLAG_CLUTTERED = 1 /* of a place: not all of the disk is seen from it */
+};
+
+/* Heights of the rays along a surface, in radii: above roughness, below what stands there. */
+#define CLEAR_HEIGHT 0.05
+
+/* Photons whose mean place is further off, in radii, lie to one side: on a whole disk it is within
+ * this with near certainty. */
+#define ASIDE_MOST 0.2
+
+/* Surfaces turned further away than this are others: of photons and of places. */
+#define PHOTON_COSINE 0.5
+#define PLACE_COSINE 0.7
+
+/* It vanishes at the rim, so that the sum is right for photons spread at random and for photons
+ * spread evenly: those of a light that come directly are in between. */
+#define PLACE_KERNEL KERNEL_EPANECHNIKOV
+
+/* How far a place speaks for its surroundings, in radii of its disk. */
+#define PLACE_REACH 1.5
+
+struct IrradianceMap {
+    PhotonMap *places; /* power: irradiance; direction: code of the radius; flags: see above */
+};
+
+/* A radius in 16 bits: its logarithm. */
+static uint16_t radius_encode(double radius)
+{
+    double code = log2(radius) * 256 + 0x8000;
+    return (uint16_t)(code < 0 ? 0 : code > 0xffff ? 0xffff : code);
+}
+
+static double radius_decode(const Photon *place)
+{
+    return exp2(((double)(place->phi | place->theta << 8) - 0x8000) / 256);
+}
+
+typedef struct PlaceWork {
+    const Tracer *tracer;
+    const PhotonMap *photons;
+    Photon *places;
+    size_t count;
+    uint64_t seed;
+    TraceThread *threads;
+    GatherScratch **scratches;
+} PlaceWork;
+
+/* A place and its disk. */
+typedef struct Disk {
+    V3 p, n, s, t; /* s and t lie in the surface */
+    double radius;
+} Disk;
+
+/* Does the way from a to b meet nothing? */
+static bool is_clear(TraceThread *thread, V3 a, V3 b)
+{
+    Hit hit;
+    double far = v3_dist(a, b);
+    if (!(far > 0))
+        return true;
+    Ray ray = {a, v3_scale(v3_sub(b, a), 1 / far), 0, far};
+    return !trace_closest(thread, &ray, RAY_LIGHT, &hit);
+}
+
+static V3 above(const Disk *disk, double x, double y)
+{
+    V3 p = v3_mad(disk->p, CLEAR_HEIGHT * disk->radius, disk->n);
+    return v3_mad(v3_mad(p, x * disk->radius, disk->s), y * disk->radius, disk->t);
+}
+
+static bool disk_is_clear(TraceThread *thread, const Disk *disk)
+{
+    for (int i = 0; i < CLEAR_RAYS; i++) {
+        double angle = 2 * PMS_PI * i / CLEAR_RAYS;
+        if (!is_clear(thread, above(disk, 0, 0), above(disk, cos(angle), sin(angle))))
+            return false;
+    }
+    return true;
+}
+
+/* The part of the disk that is surface and seen from its middle, weighed as photons are. */
+static double disk_part(TraceThread *thread, const Disk *disk, Rng *rng)
+{
+    double found = 0;
+    double down = (CLEAR_HEIGHT + GATHER_SLAB) * disk->radius;
+    uint64_t key = rng_u64(rng);
+    for (int i = 0; i < AREA_RAYS; i++) {
+        Hit hit;
+        V2 at = warp_disk(sample_2d((uint32_t)i, key));
+        V3 p = above(disk, at.u, at.v);
+        if (!is_clear(thread, above(disk, 0, 0), p))
+            continue;
+        Ray ray = {p, v3_neg(disk->n), 0, down};
+        if (trace_closest(thread, &ray, RAY_LIGHT, &hit) &&
+            fabs(v3_dot(hit.point.ng, disk->n)) > PHOTON_COSINE)
+            found += gather_kernel(PLACE_KERNEL, at.u * at.u + at.v * at.v);
+    }
+    return fmax(found, 1) / AREA_RAYS;
+}
+
+static V3 photon_place(const PhotonMap *map, const Photon *photon)
+{
+    V3 p = v3((double)photon->pos[0], (double)photon->pos[1], (double)photon->pos[2]);
+    return v3_add(photon_map_center(map), p);
+}
+
+/* As GATHER_DISK measures it. */
+static double photon_distance2(const PhotonMap *map, const Photon *photon, V3 p, V3 n)
+{
+    V3 to = v3_sub(photon_place(map, photon), p);
+    double height = v3_dot(to, n) / GATHER_SLAB;
+    return fmax(v3_len2(to), height * height);
+}
+
+/* How far the photons' mean place is off the middle, in radii. */
+static double mean_aside(const PhotonMap *map, const Disk *disk, const uint32_t *index, int count)
+{
+    V3 sum = v3(0, 0, 0);
+    for (int i = 0; i < count; i++) {
+        Photon photon = photon_map_at(map, index[i]);
+        sum = v3_add(sum, v3_sub(photon_place(map, &photon), disk->p));
+    }
+    sum = v3_mad(sum, -v3_dot(sum, disk->n), disk->n);
+    return v3_len(sum) / (disk->radius * count);
+}
+
+/* Sum the photons; hidden ones are left out where the disk is not clear. */
+static Rgb sum_photons(TraceThread *thread, const PhotonMap *map, const Disk *disk,
+                       const uint32_t *index, int count, bool is_all_clear)
+{
+    double r = 0, g = 0, b = 0;
+    for (int i = 0; i < count; i++) {
+        Photon photon = photon_map_at(map, index[i]);
+        V3 n = normal14_decode(photon.flags >> 2);
+        V3 p = v3_mad(photon_place(map, &photon), CLEAR_HEIGHT * disk->radius, n);
+        double x = photon_distance2(map, &photon, disk->p, disk->n) / (disk->radius * disk->radius);
+        if (!is_all_clear && !is_clear(thread, above(disk, 0, 0), p))
+            continue;
+        double weight = gather_kernel(PLACE_KERNEL, fmin(1, x));
+        Rgb power = rgb_scale(rgbe_decode(photon.rgbe), (float)weight);
+        r += (double)power.r;
+        g += (double)power.g;
+        b += (double)power.b;
+    }
+    return rgb((float)r, (float)g, (float)b);
+}
+
+static void estimate(PlaceWork *work, TraceThread *thread, GatherScratch *scratch, size_t number)
+{
+    Photon *place = &work->places[number];
+    Rng rng = rng_at(work->seed, IRRADIANCE_RNG, number);
+    const GatherLimits limits = {.max_photons = PLACE_PHOTONS,
+                                 .max_radius = INFINITY,
+                                 .shape = GATHER_DISK,
+                                 .normal_cosine = PHOTON_COSINE};
+    Disk disk = {.p = photon_place(work->photons, place), .n = normal14_decode(place->flags >> 2)};
+    const uint32_t *index;
+    double radius2;
+    v3_frame(disk.n, &disk.s, &disk.t);
+    int count = photon_nearest(work->photons, disk.p, disk.n, &limits, scratch, &index, &radius2);
+    disk.radius = sqrt(radius2);
+    Rgb irradiance = RGB_BLACK;
+    uint16_t flags = 0;
+    if (count > 0 && radius2 > 0 && isfinite(radius2)) {
+        bool is_all_clear = disk_is_clear(thread, &disk);
+        double part = 1;
+        if (!is_all_clear || mean_aside(work->photons, &disk, index, count) > ASIDE_MOST)
+            part = disk_part(thread, &disk, &rng);
+        flags = is_all_clear ? 0 : FLAG_CLUTTERED;
+        irradiance = sum_photons(thread, work->photons, &disk, index, count, is_all_clear);
+        irradiance = rgb_scale(irradiance, (float)(1 / (PMS_PI * radius2 * part)));
+    }
+    uint16_t code = radius_encode(disk.radius);
+    rgbe_encode(irradiance, &rng, place->rgbe);
+    place->phi = (uint8_t)code;
+    place->theta = (uint8_t)(code >> 8);
+    place->flags = (uint16_t)((place->flags & ~3) | flags);
+}
+
+static void estimate_chunk(void *ctx, size_t index, int thread)
+{
+    PlaceWork *work = ctx;
+    size_t first = index * CHUNK_PLACES, end = first + CHUNK_PLACES;
+    for (size_t i = first; i < end && i < work->count; i++)
+        estimate(work, &work->threads[thread], work->scratches[thread], i);
+}
+
+/* --- the map ------------------------------------------------------------------------------ */
+
+static Status make_threads(PlaceWork *work, int threads, int *made, Diag *diag)
+{
+    work->threads = mem_array((size_t)threads, sizeof *work->threads);
+    work->scratches = mem_array((size_t)threads, sizeof *work->scratches);
+    if (!work->threads || !work->scratches)
+        return diag_no_memory(diag, "irradiance");
+    for (; *made < threads; ++*made) {
+        TRY(trace_thread_init(&work->threads[*made], work->tracer, diag));
+        work->scratches[*made] = gather_scratch_new();
+        if (!work->scratches[*made]) {
+            trace_thread_done(&work->threads[*made]);
+            return diag_no_memory(diag, "irradiance");
+        }
+    }
+    return OK;
+}
+
+static Status estimate_all(PlaceWork *work, int threads, Diag *diag)
+{
+    int made = 0;
+    Status status = make_threads(work, threads, &made, diag);
+    if (status == OK)
+        status = work_for(threads, (work->count + CHUNK_PLACES - 1) / CHUNK_PLACES, estimate_chunk,
+                          work);
+    for (int i = 0; i < made; i++) {
+        trace_thread_done(&work->threads[i]);
+        gather_scratch_free(work->scratches[i]);
+    }
+    mem_free(work->threads);
+    mem_free(work->scratches);
+    return status;
+}
+
+Status irradiance_map_new(const Tracer *tracer, const PhotonMap *photons, Photon *places,
+                          size_t count, uint64_t seed, int threads, Diag *diag, IrradianceMap **out)
+{
+    PlaceWork work = {
+        .tracer = tracer, .photons = photons, .places = places, .count = count, .seed = seed};
+    IrradianceMap *map = mem_alloc(sizeof *map);
+    Status status = map ? estimate_all(&work, threads, diag) : diag_no_memory(diag, "irradiance");
+    if (status == OK)
+        status =
+            photon_map_new(diag, places, count, photon_map_center(photons), threads, &map->places);
+    else
+        mem_free(places);
+    if (status == OK)
+        *out = map;
+    else
+        irradiance_map_free(map);
+    return status;
+}
+
+void irradiance_map_free(IrradianceMap *map)
+{
+    if (!map)
+        return;
+    photon_map_free(map->places);
+    mem_free(map);
+}
+
+size_t irradiance_map_count(const IrradianceMap *map)
+{
+    return photon_map_count(map->places);
+}
+
+uint64_t irradiance_map_hash(const IrradianceMap *map)
+{
+    return photon_map_hash(map->places);
+}
+
+/* --- looking up --------------------------------------------------------------------------- */
+
+typedef struct NearPlace {
+    Photon place;
+    double distance2; /* as GATHER_DISK measures it */
+} NearPlace;
+
+/* Take the places found, nearest first. */
+static int sort_places(const PhotonMap *map, const uint32_t *index, int count, V3 p, V3 n,
+                       NearPlace *out)
+{
+    int sorted = 0;
+    for (int i = 0; i < count && sorted < LOOKUP_PLACES; i++) {
+        NearPlace near = {.place = photon_map_at(map, index[i])};
+        near.distance2 = photon_distance2(map, &near.place, p, n);
+        int at = sorted++;
+        for (; at > 0 && out[at - 1].distance2 > near.distance2; at--)
+            out[at] = out[at - 1];
+        out[at] = near;
+    }
+    return sorted;
+}
+
+Rgb irradiance_at(const IrradianceMap *map, TraceThread *thread, GatherScratch *scratch,
+                  const ShapePoint *at, V3 n, double *radius)
+{
+    const GatherLimits limits = {.max_photons = LOOKUP_PLACES + 1,
+                                 .max_radius = INFINITY,
+                                 .shape = GATHER_DISK,
+                                 .normal_cosine = PLACE_COSINE};
+    const uint32_t *index;
+    double radius2;
+    NearPlace near[LOOKUP_PLACES];
+    int count = photon_nearest(map->places, at->p, n, &limits, scratch, &index, &radius2);
+    count = sort_places(map->places, index, count, at->p, n, near);
+    *radius = 0;
+    for (int i = 0; i < count; i++) {
+        const Photon *place = &near[i].place;
+        double within = radius_decode(place), lift = CLEAR_HEIGHT * sqrt(near[i].distance2);
+        if (!(near[i].distance2 <= PLACE_REACH * PLACE_REACH * within * within))
+            continue;
+        V3 other =
+            v3_mad(photon_place(map->places, place), lift, normal14_decode(place->flags >> 2));
+        V3 own = v3_mad(at->p, lift + 2 * at->p_error, n);
+        if ((place->flags & FLAG_CLUTTERED) && !is_clear(thread, own, other))
+            continue;
+        *radius = within;
+        return rgbe_decode(place->rgbe);
+    }
+    return RGB_BLACK;
+}
