@@ -269,7 +269,7 @@ static void photons_carry_the_power_of_their_light(void **state)
 
 #define GRAY_ROOM                                                                                  \
     "sphere { 0, 1 hollow pigment { rgb 1 } finish { ambient 0 diffuse 0.5 } }\n"                  \
-    "global_settings { assumed_gamma 1 max_trace_level 100\n"
+    "global_settings { assumed_gamma 1 max_trace_level 100\n"                                       \
     "  pms { gi on gi_method map global_photons %d } }\n"
 
 /* Row S3: each photon has its light's power over the number sent, 4 pi c / n from the middle of a
