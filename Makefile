@@ -24,6 +24,7 @@ LIBSRC   := $(filter-out src/cli/main.c,$(CSRC))
 LIBOBJ   := $(LIBSRC:%.c=$(B)/%.o) $(CXXSRC:%.cpp=$(B)/%.o)
 UNIT     := $(patsubst %.c,$(B)/%,$(wildcard tests/unit/*_test.c tests/physics/*_test.c \
             tests/hard/*_test.c tests/fault/*_test.c))
+PHYSICS  := $(filter $(B)/tests/physics/%,$(UNIT))
 BENCH    := $(patsubst %.cpp,$(B)/%,$(wildcard tests/bench/*_bench.cpp)) \
             $(patsubst %.c,$(B)/%,$(wildcard tests/bench/*_bench.c))
 SHTESTS   = $(wildcard tests/house/*.t tests/cli/*.t tests/image/*.t)
@@ -79,6 +80,12 @@ unit: $(UNIT)
 check-all: deps ## the tests under sanitizers, and the long ones
 	$(Q)$(MAKE) --no-print-directory check
 	$(Q)$(MAKE) --no-print-directory check MODE=asan
+
+check-physics: deps ## print what the tests of light measure, what is expected, and the error
+	$(Q)$(MAKE) --no-print-directory check-physics-built
+.PHONY: check-physics check-physics-built
+check-physics-built: $(PHYSICS)
+	$(Q)tests/physics/table.sh $(PHYSICS)
 
 parity: deps ## compare pictures and times with the installed povray
 	$(Q)$(MAKE) --no-print-directory $(B)/pms

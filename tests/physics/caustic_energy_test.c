@@ -9,6 +9,8 @@
 #include <cmocka.h>
 
 #include "lit_scene.h"
+#include "sphere_fan.h"
+#include "table.h"
 
 static const char sphere_scene[] =
     "global_settings { assumed_gamma 1 max_trace_level 10 photons { count %d } }\n"
@@ -26,41 +28,6 @@ static void make_sphere(LitScene *lit, const char *light, int photons)
     char text[1024];
     snprintf(text, sizeof text, sphere_scene, photons, light);
     lit_make(lit, text, 2, 1);
-}
-
-/* Where a ray that starts on the axis at height 6 with angle `angle` to it (point), or beside
- * it by `aside` (parallel), meets the floor after the sphere; false: it does not. */
-static bool through_sphere(double angle, double aside, double *radius, double *length)
-{
-    double x = aside, y = 6, dx = sin(angle), dy = -cos(angle), total = 0;
-    for (int surface = 0; surface < 2; surface++) {
-        double cx = x, cy = y - 1.5, b = cx * dx + cy * dy, c = cx * cx + cy * cy - 1;
-        double under = b * b - c;
-        if (surface == 0 && under <= 0)
-            return false;
-        double t = surface == 0 ? -b - sqrt(under) : -b + sqrt(fmax(0, under));
-        x += t * dx;
-        y += t * dy;
-        total += t;
-        double nx = x, ny = y - 1.5, cosine = -(nx * dx + ny * dy);
-        if (cosine < 0) {
-            nx = -nx;
-            ny = -ny;
-            cosine = -cosine;
-        }
-        double ratio = surface == 0 ? 1 / 1.5 : 1.5;
-        double k = 1 + ratio * ratio * (cosine * cosine - 1);
-        if (k < 0)
-            return false;
-        double w = ratio * cosine - sqrt(k);
-        dx = ratio * dx + w * nx;
-        dy = ratio * dy + w * ny;
-    }
-    if (dy >= 0)
-        return false;
-    *radius = fabs(x + y / -dy * dx);
-    *length = total + y / -dy;
-    return true;
 }
 
 enum { BINS = 40 };
@@ -105,7 +72,12 @@ static void check_rings(const char *light, bool is_parallel)
             square[(int)(radius / BIN_WIDTH)] += power * power;
         }
     }
-    print_message("# flux %.4f, expected %.4f\n", sum, total);
+    double error = 0;
+    for (int i = 0; i < BINS; i++)
+        error += square[i];
+    table_row(is_parallel ? "flux through a glass sphere, parallel light"
+                          : "flux through a glass sphere, point light",
+              sum, total, sqrt(error));
     assert_true(fabs(sum / total - 1) < 0.005);
     for (int i = 0; i < BINS; i++)
         assert_true(fabs(got[i] - expected[i]) < 4 * sqrt(square[i]) + 1e-3 * expected[i]);

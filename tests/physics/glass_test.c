@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "lit_scene.h"
+#include "table.h"
 
 static double stored_flux(const LitScene *lit, double *error)
 {
@@ -41,8 +42,8 @@ static double through_panes(int panes, double ior, const char *reflection, doubl
                       "union {\n",
                       PHOTONS);
     for (int i = 0; i < panes; i++)
-        at += snprintf(text + at, sizeof text - (size_t)at, "box { <-1.1,%d,-1.1>, <1.1,%d.5,1.1> }\n",
-                       i + 1, i + 1);
+        at += snprintf(text + at, sizeof text - (size_t)at,
+                       "box { <-1.1,%d,-1.1>, <1.1,%d.5,1.1> }\n", i + 1, i + 1);
     snprintf(text + at, sizeof text - (size_t)at,
              "pigment { rgbt 1 } finish { ambient 0 diffuse 0 conserve_energy\n"
              "  reflection { 0, 1 fresnel on } } interior { ior %g }\n"
@@ -64,7 +65,7 @@ static double reflectance(double ior)
 
 static void check(const char *what, double got, double expected, double error)
 {
-    print_message("# %s: %.5f, expected %.5f +- %.5f\n", what, got, expected, error);
+    table_row(what, got, expected, error);
     assert_true(fabs(got - expected) < 4 * error + 1e-6);
     assert_true(fabs(got / expected - 1) < 0.005);
 }
@@ -136,8 +137,9 @@ static void check_focus(double curvature, double thickness, double ior)
     double near = 0.3 * expected, far = 0.7 * expected, beam = 0.01 * r;
     double a = spot_radius(r, d, n, beam, near), b = spot_radius(r, d, n, beam, far);
     double focus = near + (far - near) * a / (a - b);
-    print_message("# focus of a lens %g thick, radii %g, ior %g: %.5f, expected %.5f\n", d, r, n,
-                  focus, expected);
+    char what[100];
+    snprintf(what, sizeof what, "focus of a lens %g thick, radii %g, ior %g", d, r, n);
+    table_row(what, focus, expected, 0);
     assert_true(fabs(focus / expected - 1) < 0.005);
 }
 

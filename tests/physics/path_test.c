@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "lit_scene.h"
+#include "table.h"
 
 #include "eye/camera.h"
 #include "eye/eye.h"
@@ -94,7 +95,7 @@ static Mean measure(const char *text, double light_radius, int groups, Expected 
 
 static void check(const char *name, double got, double expected, double error)
 {
-    print_message("# %s: %.5f, expected %.5f +- %.5f\n", name, got, expected, error);
+    table_row(name, got, expected, error);
     assert_true(fabs(got - expected) < 4 * error + ROUNDING * fmax(1, fabs(expected)));
 }
 

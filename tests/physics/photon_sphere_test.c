@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "lit_scene.h"
+#include "table.h"
 
 static V3 somewhere(uint64_t index)
 {
@@ -51,8 +52,9 @@ static void check_sphere(double rho, double scale, const char *light, double exp
     /* A cap is 1/100 of the sphere: about 100 independent estimates of so many photons, and
      * photons of one path are not independent. */
     double error = expected / sqrt(photons * 100) / (1 - rho);
-    print_message("# rho %g: indirect %.4f, expected %.4f +- %.4f, %.0f photons\n", rho, mean,
-                  expected, error, photons);
+    char what[100];
+    snprintf(what, sizeof what, "closed sphere, reflectance %g, size %g: indirect", rho, scale);
+    table_row(what, mean, expected, error);
     assert_true(fabs(mean - expected) < 4 * error);
     assert_true(fabs(mean / expected - 1) < 0.01);
     /* The books say the same: nothing escapes, and nothing is lost. */

@@ -1,6 +1,6 @@
 /* Renders of many passes: the same bytes however they are cut up, whole pictures whenever they
  * end, and the mean that single renders have.  SPDX-License-Identifier: Apache-2.0 */
-#include "render/render.h"
+#include "render/progressive.h"
 
 #include "base/work.h"
 #include "sdl/sdl.h"
@@ -172,6 +172,26 @@ static void every_pass_is_another(void **state)
     done(&one);
     done(&two);
     done(&seed);
+}
+
+/* The product of (j + a) / (j + 1) is a quotient of gamma functions, and goes as passes^(a - 1). */
+static void radii_shrink_by_the_rule(void **state)
+{
+    (void)state;
+    const double a = 2.0 / 3;
+    assert_true(progressive_shrink(1) == 1);
+    assert_true(fabs(progressive_shrink(2) - sqrt((1 + a) / 2)) < 1e-15);
+    for (uint64_t n = 2; n <= 200000; n *= 10) {
+        double x = (double)n, expected = exp(lgamma(x + a) - lgamma(1 + a) - lgamma(x + 1));
+        double square = progressive_shrink(n) * progressive_shrink(n);
+        assert_true(fabs(square / expected - 1) < 1e-9);
+    }
+    Run run = passes(EVERYTHING, 5);
+    double ratio = run.result.last_radii.caustic / run.result.first_radii.caustic;
+    assert_true(fabs(ratio / progressive_shrink(5) - 1) < 1e-12);
+    ratio = run.result.last_radii.global / run.result.first_radii.global;
+    assert_true(fabs(ratio / progressive_shrink(5) - 1) < 1e-12);
+    done(&run);
 }
 
 static void pictures_are_shown_at_powers_of_two(void **state)
@@ -376,6 +396,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(passes_may_be_spread_over_runs_and_threads),
         cmocka_unit_test(every_pass_is_another),
+        cmocka_unit_test(radii_shrink_by_the_rule),
         cmocka_unit_test(pictures_are_shown_at_powers_of_two),
         cmocka_unit_test(an_interrupted_render_has_whole_passes),
         cmocka_unit_test(time_ends_a_render_after_whole_passes),
