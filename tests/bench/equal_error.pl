@@ -1,26 +1,23 @@
 #!/usr/bin/perl
-# Row S16: equal error on a caustic, how long photons, paths and povray take to be as wrong as each
-# other.
+# Equal error: how long photons, paths and povray take to be as wrong as each other, on a caustic
+# and on the indirect light of a room.
 #
-# Error is the root mean square over a rectangle around the caustic, against a picture of very many
-# photons: pms against its own, povray against povray's own, so that neither pays for what the two
-# see differently.  Time is processor time of the whole program, one thread.  Paths have no bias:
-# their time at another error follows from the square.  povray's is read off the line through its
-# measured points, both axes logarithmic.  SPDX-License-Identifier: Apache-2.0
+# Error is the root mean square over the picture, or over a rectangle around the caustic.  Caustics
+# are compared with pictures of very many photons, each program's with its own, so that neither
+# pays for what the two see differently; indirect light with very many paths.  Time is processor
+# time of the whole program, one thread.  Paths have no bias: their time at another error follows
+# from its square.  povray's is read off the line through its measured points, both axes
+# logarithmic.  SPDX-License-Identifier: Apache-2.0
 use strict;
 use warnings;
 use File::Temp 'tempdir';
 
 my $pms    = $ENV{PMS} || 'build/release/pms';
-my $scene  = 'tests/bench/caustic.pov';
-my @size   = (160, 120);
-my $region = '94,60,50,38';
 my @seeds  = (1, 2, 3);
-my @points = ([20000, 60], [80000, 120], [320000, 250], [1280000, 500]);
-my @truth  = (30000000, 2000);
-my @povray_truth = (8000000, 1000);
-my $paths = 256;    # a pixel
 my $folder = tempdir(CLEANUP => 1);
+my $has_povray = system('command -v povray >/dev/null 2>&1') == 0;
+
+# --- running ------------------------------------------------------------------------------------
 
 # Run a command; returns its processor seconds.
 sub seconds {
@@ -37,36 +34,38 @@ sub seconds {
     return $after[2] + $after[3] - $before[2] - $before[3];
 }
 
+# Render a scene, a hash of name, width, height and region; values are declared in it.
 sub pms {
-    my ($file, $seed, @options) = @_;
-    return seconds($pms, $scene, '-w', $size[0], '--height', $size[1], '-j', 1, '--seed', $seed,
-        '--progress', 'none', '-o', "$folder/$file", @options);
-}
-
-sub photons {
-    my ($file, $seed, $point, @options) = @_;
-    return pms($file, $seed, '-d', "Count=$point->[0]", '-d', "Gather=$point->[1]", @options);
+    my ($scene, $file, $seed, $values, @options) = @_;
+    return seconds($pms, "tests/bench/$scene->{name}.pov", '-w', $scene->{width}, '--height',
+        $scene->{height}, '-j', 1, '--seed', $seed, '--progress', 'none', '-o', "$folder/$file",
+        (map { ('-d', "$_=$values->{$_}") } sort keys %$values), @options);
 }
 
 sub povray {
-    my ($file, $point) = @_;
-    return seconds('povray', "+I$scene", "+W$size[0]", "+H$size[1]", '-A', '-D', '+WT1', '+FE',
-        "Declare=Count=$point->[0]", "Declare=Gather=$point->[1]", "+O$folder/$file");
+    my ($scene, $file, $values, @options) = @_;
+    return seconds('povray', "+Itests/bench/$scene->{name}.pov", "+W$scene->{width}",
+        "+H$scene->{height}", '-D', '+WT1', '+FE', "+O$folder/$file", @options,
+        map { "Declare=$_=$values->{$_}" } sort keys %$values);
 }
 
 sub rmse {
-    my ($file, $reference) = @_;
-    my $json = `$pms compare $folder/$file $folder/$reference --region $region --json`;
+    my ($scene, $file, $reference) = @_;
+    my $region = $scene->{region} ? "--region $scene->{region}" : '';
+    my $json   = `$pms compare $folder/$file $folder/$reference $region --json`;
     $json =~ /"rmse": ([^,]+)/ or die "cannot compare $file with $reference\n";
     return $1;
 }
 
-sub mean { my $sum = 0; $sum += $_ for @_; return $sum / @_ }
+# --- figures ------------------------------------------------------------------------------------
 
-# Half the range of some numbers, as a part of their mean.
+sub mean { my $sum = 0; $sum += $_ for @_; return $sum / @_ }
+sub geometric { return exp(mean(map { log } @_)) }
+
+# Half the range of some numbers, in percent of their mean.
 sub spread {
     my @sorted = sort { $a <=> $b } @_;
-    return ($sorted[-1] - $sorted[0]) / 2 / mean(@_);
+    return 50 * ($sorted[-1] - $sorted[0]) / mean(@_);
 }
 
 # The time at an error, on the line through the two points next to it.
@@ -79,49 +78,82 @@ sub time_at {
     return $a->[0] * ($error / $a->[1])**$slope;
 }
 
-photons('truth.exr', 99, \@truth, '-A');
-photons('smooth.exr', 99, \@truth, '--aa', 16);
-
-my (@path_time, @path_error);
-for my $seed (@seeds) {
-    push @path_time, pms('path.exr', $seed, '--integrator', 'path', '--aa', $paths);
-    push @path_error, rmse('path.exr', 'smooth.exr');
-}
-my ($path_time, $path_error) = (mean(@path_time), mean(@path_error));
-
-my @povray;
-if (system('command -v povray >/dev/null 2>&1') == 0) {
-    povray('povray_truth.exr', \@povray_truth);
-    for my $point (@points, [5120000, 1000]) {
-        my $time = povray('povray.exr', $point);
-        push @povray, [$time, rmse('povray.exr', 'povray_truth.exr')];
-    }
-}
-
-print "equal error on a caustic, processor seconds, one thread, three seeds\n";
-printf "  %8s %6s %8s %16s %10s %16s %9s %6s\n", 'photons', 'gather', 'seconds', 'rmse',
-    'paths', 'times (reach 20)', 'povray', 'times';
-my (@against_paths, @against_povray);
-for my $point (@points) {
+# Seconds and errors of one setting over the seeds, as [mean seconds, mean error, spread].
+sub over_seeds {
+    my ($scene, $reference, $values, @options) = @_;
     my (@time, @error);
     for my $seed (@seeds) {
-        push @time, photons('photons.exr', $seed, $point, '-A');
-        push @error, rmse('photons.exr', 'truth.exr');
+        push @time, pms($scene, 'seed.exr', $seed, $values, @options);
+        push @error, rmse($scene, 'seed.exr', $reference);
     }
-    my ($time, $error) = (mean(@time), mean(@error));
-    my $by_paths = $path_time * ($path_error / $error)**2;
-    push @against_paths, $by_paths / $time;
-    printf "  %8d %6d %8.3f %8.4f +-%4.0f %% %10.1f %16.0f", @$point, $time, $error,
-        100 * spread(@error), $by_paths, $by_paths / $time;
-    if (@povray) {
-        my $by_povray = time_at($error, @povray);
-        push @against_povray, $by_povray / $time;
-        printf " %9.3f %6.1f", $by_povray, $by_povray / $time;
+    return [mean(@time), mean(@error), spread(@error)];
+}
+
+# --- a caustic ----------------------------------------------------------------------------------
+
+sub caustic {
+    my $scene = {name => 'caustic', width => 160, height => 120, region => '94,60,50,38'};
+    my @points = map { {Count => $_->[0], Gather => $_->[1]} }
+        ([20000, 60], [80000, 120], [320000, 250], [1280000, 500]);
+    my $truth = {Count => 30000000, Gather => 2000};
+    pms($scene, 'truth.exr',  99, $truth, '-A');
+    pms($scene, 'smooth.exr', 99, $truth, '--aa', 16);
+    my ($path_time, $path_error, $path_spread) =
+        @{over_seeds($scene, 'smooth.exr', {}, '--integrator', 'path', '--aa', 256)};
+    my @povray;
+    if ($has_povray) {
+        povray($scene, 'povray_truth.exr', {Count => 8000000, Gather => 1000}, '-A');
+        for my $point (@points, {Count => 5120000, Gather => 1000}) {
+            my $time = povray($scene, 'povray.exr', $point, '-A');
+            push @povray, [$time, rmse($scene, 'povray.exr', 'povray_truth.exr')];
+        }
     }
+    print "equal error on a caustic, processor seconds, one thread, three seeds\n";
+    printf "  %8s %6s %8s %16s %10s %16s %9s %6s\n", 'photons', 'gather', 'seconds', 'rmse',
+        'paths', 'times (reach 20)', 'povray', 'times';
+    my (@against_paths, @against_povray);
+    for my $point (@points) {
+        my ($time, $error, $spread) = @{over_seeds($scene, 'truth.exr', $point, '-A')};
+        my $by_paths = $path_time * ($path_error / $error)**2;
+        push @against_paths, $by_paths / $time;
+        printf "  %8d %6d %8.3f %8.4f +-%4.0f %% %10.1f %16.0f", $point->{Count}, $point->{Gather},
+            $time, $error, $spread, $by_paths, $by_paths / $time;
+        if (@povray) {
+            my $by_povray = time_at($error, @povray);
+            push @against_povray, $by_povray / $time;
+            printf " %9.3f %6.1f", $by_povray, $by_povray / $time;
+        }
+        print "\n";
+    }
+    printf "  geometric mean: %.0f times less than paths (reach 20; their rmse varies by %.0f %%)",
+        geometric(@against_paths), $path_spread;
+    printf ", %.1f times less than povray (reach 5)", geometric(@against_povray)
+        if @against_povray;
     print "\n";
 }
-sub geometric { return exp(mean(map { log } @_)) }
-printf "  geometric mean: %.0f times less than paths (reach 20; their rmse varies by %.0f %%)",
-    geometric(@against_paths), 100 * spread(@path_error);
-printf ", %.1f times less than povray (reach 5)", geometric(@against_povray) if @against_povray;
-print "\n";
+
+# --- indirect light -----------------------------------------------------------------------------
+
+sub indirect {
+    my $scene = {name => 'room', width => 80, height => 60};
+    my @points = map { {Count => $_->[0], Bound => $_->[1], Bounces => $_->[2]} }
+        ([50, 1, 2], [150, 0.5, 3], [600, 0.25, 5]);
+    pms($scene, 'truth.exr', 99, {}, '--integrator', 'path', '--aa', 2048);
+    my ($time, $error, $spread) = @{over_seeds($scene, 'truth.exr', {}, '--aa', 4)};
+    print "\nequal error on the indirect light of a room, against 2048 paths a pixel\n";
+    printf "  pms                          %8.3f s, rmse %.4f +- %.0f %%\n", $time, $error, $spread;
+    return if !$has_povray;
+    my @povray;
+    for my $point (@points) {
+        my $seconds = povray($scene, 'povray.exr', $point, '+A0.0', '+AM1', '+R2', '-J');
+        my $rmse = rmse($scene, 'povray.exr', 'truth.exr');
+        printf "  povray, count %3d bound %.2f  %8.3f s, rmse %.4f\n", $point->{Count},
+            $point->{Bound}, $seconds, $rmse;
+        push @povray, [$seconds, $rmse];
+    }
+    printf "  pms takes %.1f times less than povray's last line (reach 4), at %.1f times less error\n",
+        $povray[-1][0] / $time, $povray[-1][1] / $error;
+}
+
+caustic();
+indirect();

@@ -1,7 +1,8 @@
 #!/bin/sh
 # Every figure of `make bench`, measured in one run on this machine: start-up, the photon map
-# against nanoflann, the photon pass against raw Embree rays, threads, a caustic at equal error
-# against paths and povray, whole renders against povray.  Figures depend on what else the machine does: look at the ratios, run it alone.
+# against nanoflann, the photon pass against raw Embree rays, threads, light at equal error against
+# paths and povray, whole renders against povray.  Figures depend on what else the machine does:
+# look at the ratios, run it alone.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 PMS=${PMS:-build/release/pms}
