@@ -28,7 +28,7 @@ typedef struct EyeOptions {
                               lens) is a single point for each sample */
     uint32_t first_sample; /* samples of each pixel in the passes before */
     const PhotonMap *caustic, *global; /* NULL: none */
-    const IrradianceMap *irradiance;   /* for final gathering; NULL: look at the global map */
+    const IrradianceMap *irradiance;   /* for final gathering; NULL: it finds glow alone */
     const struct IrradianceCache *cache; /* NULL: gather everywhere */
     const PhotonReach *caustic_reach;  /* for caustic_limits */
     GatherLimits caustic_limits, global_limits;

@@ -180,7 +180,7 @@ Status indirect_cache_fill(const Tracer *tracer, const EyeOptions *options,
                            IrradianceCache **out)
 {
     *out = NULL;
-    if (!plan_has(tracer_plan(tracer), FEATURE_IRRADIANCE_CACHE) || !options->irradiance)
+    if (!plan_has(tracer_plan(tracer), FEATURE_IRRADIANCE_CACHE))
         return OK;
     double reach = tracer_scene(tracer)->settings.radiosity.error_bound * ERROR_UNIT;
     IrradianceCache *cache = irradiance_cache_new(bound_center(tracer_bound(tracer)), reach);

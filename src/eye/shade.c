@@ -139,8 +139,11 @@ void describe_first(const Hit *hit, const SurfaceSample *s, EyeSample *first)
 
 static void add_indirect(EyeThread *eye, const Path *path, const SurfaceSample *s, Radiance *out)
 {
-    Rgb light = eye->options.irradiance ? gathered_light(eye, s, &path->inside, path->weight)
-                                        : mapped_light(eye, s);
+    Rgb light = RGB_BLACK;
+    if (plan_has(eye->plan, FEATURE_FINAL_GATHER))
+        light = gathered_light(eye, s, &path->inside, path->weight);
+    else if (eye->options.global)
+        light = mapped_light(eye, s);
     add_part(out, PART_INDIRECT, path->through, light);
 }
 
@@ -154,7 +157,7 @@ static void add_surface(EyeThread *eye, const Path *path, const SurfaceSample *s
         if (eye->options.caustic)
             add_part(out, PART_CAUSTIC, path->through, caustic_light(eye, s));
     }
-    if (eye->options.global)
+    if (plan_has(eye->plan, FEATURE_GLOBAL_MAP))
         add_indirect(eye, path, s, out);
     if (plan_has(eye->plan, FEATURE_REFLECTION))
         add_reflections(eye, path, s, out);

@@ -88,11 +88,15 @@ static V3 above(const Disk *disk, double x, double y)
     return v3_mad(v3_mad(p, x * disk->radius, disk->s), y * disk->radius, disk->t);
 }
 
+/* Is nothing in the way as far as the place is used?  The rays are that much longer that a wall
+ * between two of them is met as well. */
 static bool disk_is_clear(TraceThread *thread, const Disk *disk)
 {
+    double far = PLACE_REACH / cos(PMS_PI / CLEAR_RAYS);
     for (int i = 0; i < CLEAR_RAYS; i++) {
         double angle = 2 * PMS_PI * i / CLEAR_RAYS;
-        if (!is_clear(thread, above(disk, 0, 0), above(disk, cos(angle), sin(angle))))
+        V3 end = above(disk, far * cos(angle), far * sin(angle));
+        if (!is_clear(thread, above(disk, 0, 0), end))
             return false;
     }
     return true;
@@ -303,6 +307,9 @@ static int sort_places(const PhotonMap *map, const uint32_t *index, int count, V
 Rgb irradiance_at(const IrradianceMap *map, TraceThread *thread, GatherScratch *scratch,
                   const ShapePoint *at, V3 n, double *radius)
 {
+    *radius = 0;
+    if (!map)
+        return RGB_BLACK;
     const GatherLimits limits = {.max_photons = LOOKUP_PLACES + 1,
                                  .max_radius = INFINITY,
                                  .shape = GATHER_DISK,
@@ -312,7 +319,6 @@ Rgb irradiance_at(const IrradianceMap *map, TraceThread *thread, GatherScratch *
     NearPlace near[LOOKUP_PLACES];
     int count = photon_nearest(map->places, at->p, n, &limits, scratch, &index, &radius2);
     count = sort_places(map->places, index, count, at->p, n, near);
-    *radius = 0;
     for (int i = 0; i < count; i++) {
         const Photon *place = &near[i].place;
         double within = radius_decode(place), lift = CLEAR_HEIGHT * sqrt(near[i].distance2);

@@ -25,6 +25,7 @@ struct GatherScratch;
 
 /* Look up the irradiance at a point of a surface.
  *
+ * map     NULL: there is none.
  * n       unit, the side that is seen.
  * radius  set to how far around the estimate was made, scene units: it says nothing of what is
  *         smaller.  0: there is none.

@@ -168,12 +168,20 @@ static bool is_collecting(const Walk *walk, const Hit *hit)
     return is;
 }
 
+/* Light that a surface gives off has one reflection less to go: the eye sees it directly, light
+ * of a light source by its first reflection. */
+static int most_diffuse(const Walk *walk)
+{
+    return walk->rules->max_diffuse - (walk->beam->light == NULL);
+}
+
 static bool is_kept(const Walk *walk, const Hit *hit, Rgb diffuse)
 {
     if (rgb_is_black(diffuse))
         return false;
     if (walk->rules->map == MAP_GLOBAL)
-        return walk->is_diffuse || walk->rules->keeps_first || !walk->beam->light;
+        return (walk->is_diffuse || walk->rules->keeps_first || !walk->beam->light) &&
+               walk->diffuse <= most_diffuse(walk);
     return walk->is_specular && is_collecting(walk, hit);
 }
 
@@ -318,13 +326,6 @@ static bool advance(Walk *walk, Hit *hit, SurfaceSample *s, PathEnd *end)
     surface_sample(walk->thread, &walk->ray, hit, &walk->inside, s);
     walk->weight = rgb_mul(walk->weight, interiors_fade(&walk->inside, hit->t));
     return true;
-}
-
-/* Light that a surface gives off has one reflection less to go: the eye sees it directly, light
- * of a light source by its first reflection. */
-static int most_diffuse(const Walk *walk)
-{
-    return walk->rules->max_diffuse - (walk->beam->light == NULL);
 }
 
 /* The limits of the language. */

@@ -134,5 +134,6 @@ void read_background(Parser *p);
 void read_global_settings(Parser *p);
 void read_global_photons(Parser *p, PhotonSettings *photons);
 void read_pms_settings(Parser *p, PmsSettings *pms);
+void read_radiosity(Parser *p, RadiositySettings *radiosity);
 
 #endif

@@ -263,7 +263,8 @@ static void read_setting(Parser *p, SceneSettings *settings)
         read_global_photons(p, &settings->photons);
         break;
     case KW_RADIOSITY:
-        parse_fail_not_yet(p, head.span, "radiosity");
+        read_radiosity(p, &settings->radiosity);
+        break;
     case KW_SUBSURFACE:
         parse_fail_not_yet(p, head.span, "subsurface");
     default:

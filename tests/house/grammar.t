@@ -17,7 +17,7 @@ check() {
 }
 check "1 - every word pms has is in the grammar" "$(comm -23 "$tmp/has" "$tmp/grammar")"
 check "2 - every word of the grammar is one pms has" \
-    "$(comm -13 "$tmp/has" "$tmp/grammar" | grep -vxE 'unofficial|radiosity')"
+    "$(comm -13 "$tmp/has" "$tmp/grammar" | grep -vxE 'unofficial|normal|subsurface|load_file|save_file')"
 
 folders=$(for folder in tests/lang/*/; do basename "$folder"; done)
 rules=$(sed -n 's/^\([a-z_0-9]*\) *=.*/\1/p' grammar/pms.ebnf)
