@@ -293,14 +293,16 @@ static bool follow(Walk *walk, const Hit *hit, const SurfaceSample *s, const Rou
     return false;
 }
 
+/* Is the beam's target what was hit first?  Of targets in one place, the one written first is. */
 static bool is_target(const Walk *walk, const Hit *hit)
 {
     const Beam *beam = walk->beam;
     const Scene *scene = tracer_scene(walk->thread->tracer);
-    bool is = hit->object == beam->target;
-    for (int i = 0; i < hit->tie_count; i++)
-        is = is || &scene->objects[hit->ties[i].object] == beam->target;
-    return is && (isinf(beam->reach) || v3_dist(hit->point.p, beam->center) <= beam->reach);
+    const Object *object = hit->object;
+    for (int i = 0; i < hit->tie_count && !object->is_target; i++)
+        object = &scene->objects[hit->ties[i].object];
+    return object == beam->target &&
+           (isinf(beam->reach) || v3_dist(hit->point.p, beam->center) <= beam->reach);
 }
 
 /* Go to the next surface.  Returns false, with the end of the path, when there is none to go on

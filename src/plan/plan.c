@@ -433,10 +433,10 @@ static void plan_dispersion(const PlanOptions *options, const Evidence *found, P
     if (!s)
         row_set(row, false, SPAN_NONE, "no transparent object has dispersion");
     else if (s->interior->dispersion == DISPERSION_RATIO)
-        row_set(row, true, s->interior->span, "an interior with dispersion %g, seen in %d bands",
+        row_set(row, true, s->span, "an interior with dispersion %g, seen in %d bands",
                 s->interior->coefficients[0], s->interior->dispersion_samples);
     else
-        row_set(row, true, s->interior->span, "an interior with %s in pms{}, seen in %d bands",
+        row_set(row, true, s->span, "an interior with %s in pms{}, seen in %d bands",
                 s->interior->dispersion == DISPERSION_CAUCHY ? "cauchy" : "sellmeier",
                 s->interior->dispersion_samples);
 }

@@ -110,15 +110,16 @@ static bool mark_specular_targets(Scene *scene)
     for (uint32_t i = 0; i < scene->surface_count; i++) {
         Surface *s = &scene->surfaces[i];
         bool reflects = s->may_reflect && s->photons.reflection != TRI_OFF;
-        bool refracts = s->may_transmit && s->photons.refraction != TRI_OFF &&
-                        interior_bends(s->interior) && !s->photons.is_pass_through;
+        bool transmits = s->may_transmit && s->photons.refraction != TRI_OFF &&
+                         !s->photons.is_pass_through;
+        bool refracts = transmits && interior_bends(s->interior);
+        if (transmits) /* photons on their way: a bubble in glass, a film behind it */
+            s->photons.refraction = TRI_ON;
         if (!has_bounds(scene, s) || !(reflects || refracts))
             continue;
         s->is_target = any = true;
         if (reflects)
             s->photons.reflection = TRI_ON;
-        if (refracts)
-            s->photons.refraction = TRI_ON;
     }
     return any;
 }

@@ -4,24 +4,41 @@
 
 enum { PRIORITY_MAX = 1000000 };
 
-/* Read up to `most` numbers, at least `least`, into coefficients. */
-static void read_formula(Parser *p, Interior *interior, DispersionKind kind, int least, int most)
+/* Read `least` numbers and as many more as there are, up to `most`; returns how many. */
+static int read_numbers(Parser *p, const char *name, int least, int most, double *out)
 {
-    const char *name = kind == DISPERSION_CAUCHY ? "cauchy" : "sellmeier";
-    double coefficients[6] = {0};
-    Span first = parse_last_span(p);
-    for (int i = 0; i < most; i++) {
-        if (i >= least && !parse_is_expression(p))
-            break;
-        coefficients[i] = read_finite(p, name, NULL);
-        if (i + 1 < most)
-            parse_comma(p);
+    int count = 0;
+    while (count < most && (count < least || parse_is_expression(p))) {
+        out[count++] = read_finite(p, name, NULL);
+        parse_comma(p);
     }
+    return count;
+}
+
+static void set_formula(Parser *p, Interior *interior, DispersionKind kind, const Token *word,
+                        const double coefficients[DISPERSION_COEFFICIENTS])
+{
     if (!interior_set_formula(interior, kind, coefficients))
-        parse_fail(p, span_join(first, parse_last_span(p)),
-                   "%s gives no index of refraction for all light, 380 to 730 nm (wavelengths are "
-                   "in micrometres)",
-                   name);
+        parse_fail(p, span_join(word->span, parse_last_span(p)),
+                   "this gives no index of refraction for all light from 380 to 730 nm "
+                   "(wavelengths are in micrometres)");
+}
+
+static void read_cauchy(Parser *p, Interior *interior, const Token *word)
+{
+    double coefficients[DISPERSION_COEFFICIENTS] = {0};
+    read_numbers(p, "cauchy", 2, 3, coefficients);
+    set_formula(p, interior, DISPERSION_CAUCHY, word, coefficients);
+}
+
+static void read_sellmeier(Parser *p, Interior *interior, const Token *word)
+{
+    double coefficients[DISPERSION_COEFFICIENTS] = {0};
+    int count = read_numbers(p, "sellmeier", 2, DISPERSION_COEFFICIENTS, coefficients);
+    if (count % 2)
+        parse_fail(p, parse_last_span(p), "sellmeier wants pairs of numbers B, C; got %d numbers",
+                   count);
+    set_formula(p, interior, DISPERSION_SELLMEIER, word, coefficients);
 }
 
 void read_pms_interior(Parser *p, Interior *interior)
@@ -32,9 +49,9 @@ void read_pms_interior(Parser *p, Interior *interior)
         if (read_is_word(&word, "priority"))
             interior->priority = (int)parse_int(p, "priority", -PRIORITY_MAX, PRIORITY_MAX);
         else if (read_is_word(&word, "cauchy"))
-            read_formula(p, interior, DISPERSION_CAUCHY, 2, 3);
+            read_cauchy(p, interior, &word);
         else if (read_is_word(&word, "sellmeier"))
-            read_formula(p, interior, DISPERSION_SELLMEIER, 6, 6);
+            read_sellmeier(p, interior, &word);
         else
             parse_fail(p, word.span,
                        "pms{} of an interior has priority, cauchy and sellmeier; this is none");

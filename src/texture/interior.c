@@ -10,14 +10,14 @@
 #define WAVELENGTH_D 587.56
 
 /* Return the index of a formula at a wavelength, or NAN. */
-static double formula_ior(DispersionKind kind, const double c[6], double wavelength)
+static double formula_ior(DispersionKind kind, const double *c, double wavelength)
 {
     double w = wavelength * 1e-3, w2 = w * w;
     if (kind == DISPERSION_CAUCHY)
         return c[0] + (c[1] + c[2] / w2) / w2;
     double n2 = 1;
-    for (int i = 0; i < 3; i++)
-        n2 += c[i] * w2 / (w2 - c[i + 3]);
+    for (int i = 0; i < DISPERSION_COEFFICIENTS; i += 2)
+        n2 += c[i] * w2 / (w2 - c[i + 1]);
     return sqrt(n2);
 }
 
@@ -35,7 +35,8 @@ double interior_ior(const Interior *interior, double wavelength)
 /* Resonances lie between wavelengths, so the formula is tried at many of them. */
 enum { TRIALS = 351 };
 
-bool interior_set_formula(Interior *interior, DispersionKind kind, const double coefficients[6])
+bool interior_set_formula(Interior *interior, DispersionKind kind,
+                          const double coefficients[DISPERSION_COEFFICIENTS])
 {
     for (int i = 0; i < TRIALS; i++) {
         double part = (double)i / (TRIALS - 1);
@@ -46,7 +47,7 @@ bool interior_set_formula(Interior *interior, DispersionKind kind, const double 
     }
     interior->ior = formula_ior(kind, coefficients, WAVELENGTH_D);
     interior->dispersion = kind;
-    for (int i = 0; i < 6; i++)
+    for (int i = 0; i < DISPERSION_COEFFICIENTS; i++)
         interior->coefficients[i] = coefficients[i];
     return true;
 }

@@ -119,8 +119,10 @@ typedef enum DispersionKind {
     DISPERSION_NONE,
     DISPERSION_RATIO,    /* a power of the wavelength; coefficient: index of violet over red */
     DISPERSION_CAUCHY,   /* A + B/w^2 + C/w^4 */
-    DISPERSION_SELLMEIER /* n^2 = 1 + the sum of Bi w^2 / (w^2 - Ci): B1 B2 B3 C1 C2 C3 */
+    DISPERSION_SELLMEIER /* n^2 = 1 + the sum of B w^2 / (w^2 - C) over pairs B C */
 } DispersionKind;
+
+enum { DISPERSION_COEFFICIENTS = 8 }; /* those not given are 0 */
 
 typedef struct Interior {
     Span span;
@@ -134,7 +136,7 @@ typedef struct Interior {
     int priority;    /* where interiors overlap the highest counts; of equals the one entered last */
     DispersionKind dispersion;
     int dispersion_samples; /* wavelengths that the eye sees through it; at least 2 */
-    double coefficients[6]; /* of the formulas, w in micrometres */
+    double coefficients[DISPERSION_COEFFICIENTS]; /* w in micrometres */
 } Interior;
 
 #define INTERIOR_DEFAULT ((Interior){.ior = 1, .dispersion_samples = 7})
@@ -163,7 +165,8 @@ bool texture_may_reflect(const Texture *texture);
 double interior_ior(const Interior *interior, double wavelength);
 
 /* Set the ior to a formula's; false, without a change, if the formula makes no sense for light. */
-bool interior_set_formula(Interior *interior, DispersionKind kind, const double coefficients[6]);
+bool interior_set_formula(Interior *interior, DispersionKind kind,
+                          const double coefficients[DISPERSION_COEFFICIENTS]);
 
 /* Return whether light may be bent where an interior begins in the open. */
 static inline bool interior_bends(const Interior *interior)

@@ -97,6 +97,27 @@ static void a_plain_scene_needs_light_and_shadows_only(void **state)
     assert_true(s->plan.has_ambient && !s->plan.is_unlit);
 }
 
+static void dispersion_wants_a_transparent_interior_that_has_it(void **state)
+{
+    Small *s = *state;
+    const PlanRow *row = &s->plan.rows[FEATURE_DISPERSION];
+    s->interior.dispersion = DISPERSION_RATIO;
+    s->interior.coefficients[0] = 1.1;
+    assert_false(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_DISPERSION)); /* opaque */
+    s->surface.may_transmit = true;
+    assert_true(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_DISPERSION));
+    assert_int_equal(row->why.begin, 1);
+    assert_string_equal(row->reason, "an interior with dispersion 1.1, seen in 7 bands");
+    s->interior.dispersion = DISPERSION_CAUCHY;
+    assert_true(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_DISPERSION));
+    assert_non_null(strstr(row->reason, "cauchy"));
+    s->interior.dispersion = DISPERSION_SELLMEIER;
+    s->interior.dispersion_samples = 20;
+    assert_true(has(s, PLAN_OPTIONS_DEFAULT, FEATURE_DISPERSION));
+    assert_string_equal(row->reason, "an interior with sellmeier in pms{}, seen in 20 bands");
+    assert_false(has(s, (PlanOptions){.quality = 5}, FEATURE_DISPERSION));
+}
+
 static void an_empty_scene_needs_nothing(void **state)
 {
     Small *s = *state;
@@ -338,6 +359,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         PLAN_TEST(every_row_has_a_reason),
         PLAN_TEST(a_plain_scene_needs_light_and_shadows_only),
+        PLAN_TEST(dispersion_wants_a_transparent_interior_that_has_it),
         PLAN_TEST(an_empty_scene_needs_nothing),
         PLAN_TEST(caustics_want_photons_a_light_and_a_target),
         PLAN_TEST(on_at_object_or_light_counts_and_off_at_either_wins),
