@@ -24,6 +24,7 @@ typedef struct Radiance {
 /* The sequences of points that the paths of a pixel draw from, and the number of the path. */
 typedef struct PathKeys {
     uint64_t choice, bounce, wave;
+    uint64_t gather; /* of gather rays in one of many passes; another one at each point */
     uint32_t index;
 } PathKeys;
 

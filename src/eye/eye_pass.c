@@ -242,6 +242,7 @@ bool eye_sample(EyeThread *eye, double x, double y, uint32_t pixel, uint32_t ind
     eye->path.choice = rng_u64(&of_pixel);
     eye->path.bounce = rng_u64(&of_pixel);
     eye->path.wave = rng_u64(&of_pixel);
+    eye->path.gather = rng_u64(&of_pixel);
     eye->path.index = index;
     eye->trace.media_rng = rng_at(eye->options.seed, MEDIA_RNG, (uint64_t)pixel << 32 | index);
     arena_reset(eye->trace.scratch);

@@ -22,7 +22,8 @@ enum {
     GUIDED_PART = 3,    /* one in so many rays goes where photons came from */
     GUIDE_PHOTONS = 64, /* looked at for that */
     NEAR_RAYS = 24,     /* of the small gathering */
-    CHAIN_MAX = 64      /* mirrors and panes a ray may pass */
+    CHAIN_MAX = 64,     /* mirrors and panes a ray may pass */
+    FEW_RAYS = 4
 };
 
 /* The hemisphere in cells: rows from the normal down, columns around it. */
@@ -62,22 +63,34 @@ static Rgb light_nearby(EyeThread *eye, const SurfaceSample *s, const Interiors 
     return rgb_add(light, rgb_mul(diffuse, gathered.irradiance));
 }
 
+/* The light that arrives at a side of a surface: looked up, or in one of many passes from the
+ * photons within the radius of the pass.  radius: see irradiance_at. */
+static Rgb irradiance_there(EyeThread *eye, const SurfaceSample *s, V3 n, double *radius)
+{
+    const EyeOptions *options = &eye->options;
+    eye->trace.stats.count[STAT_LOOKUPS]++;
+    if (!options->is_progressive)
+        return irradiance_at(options->irradiance, &eye->trace, eye->gather, &s->at, n, radius);
+    Rgb light = RGB_BLACK;
+    *radius = 0;
+    if (options->global)
+        photon_gather(options->global, s->at.p, n, &options->global_limits, eye->gather, &light);
+    return light;
+}
+
 /* What a surface met after t sends on of the light that comes to it. */
 static Rgb reflected_light(EyeThread *eye, const GatherRay *way, const SurfaceSample *s, double t)
 {
     Rgb diffuse = surface_diffuse_even(s), back = surface_diffuse_back(s), light = RGB_BLACK;
     double radius;
     if (!rgb_is_black(diffuse)) {
-        Rgb e = irradiance_at(eye->options.irradiance, &eye->trace, eye->gather, &s->at, s->ng,
-                              &radius);
-        eye->trace.stats.count[STAT_LOOKUPS]++;
+        Rgb e = irradiance_there(eye, s, s->ng, &radius);
         if (t < radius && way->depth == 0)
             return light_nearby(eye, s, &way->inside, diffuse, way->depth);
         light = rgb_mul(diffuse, e);
     }
     if (!rgb_is_black(back)) {
-        Rgb e = irradiance_at(eye->options.irradiance, &eye->trace, eye->gather, &s->at,
-                              v3_neg(s->ng), &radius);
+        Rgb e = irradiance_there(eye, s, v3_neg(s->ng), &radius);
         light = rgb_add(light, rgb_mul(back, e));
     }
     return light;
@@ -336,4 +349,22 @@ void final_gather(EyeThread *eye, const ShapePoint *at, V3 n, const Interiors *i
                   GatheredLight *out)
 {
     gather_at(eye, at, n, inside, rays, 0, out);
+}
+
+Rgb final_gather_few(EyeThread *eye, const ShapePoint *at, V3 n, const Interiors *inside)
+{
+    V3 ng = v3_dot(at->ng, n) < 0 ? v3_neg(at->ng) : at->ng;
+    uint64_t key = eye->path.gather++;
+    Rgb sum = RGB_BLACK;
+    eye->trace.stats.count[STAT_FINAL_GATHERS]++;
+    for (uint32_t i = 0; i < FEW_RAYS; i++) {
+        V2 u = sample_2d(eye->path.index * FEW_RAYS + i, key);
+        V3 d = warp_to_frame(warp_cosine(u), n);
+        if (!(v3_dot(d, ng) > 0))
+            continue;
+        double distance;
+        GatherRay way = {.ray = trace_ray_from(at, d), .inside = *inside, .weight = RGB_WHITE};
+        sum = rgb_add(sum, follow(eye, &way, &distance));
+    }
+    return rgb_scale(sum, 1.0f / FEW_RAYS);
 }

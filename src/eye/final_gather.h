@@ -24,4 +24,8 @@ typedef struct GatheredLight {
 void final_gather(EyeThread *eye, const ShapePoint *at, V3 n, const Interiors *inside, int rays,
                   GatheredLight *out);
 
+/* The same irradiance by a few rays, for one of many passes: those of all samples of a pixel cover
+ * the hemisphere evenly. */
+Rgb final_gather_few(EyeThread *eye, const ShapePoint *at, V3 n, const Interiors *inside);
+
 #endif

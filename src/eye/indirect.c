@@ -58,6 +58,8 @@ static Rgb irradiance_seen(EyeThread *eye, const SurfaceSample *s, V3 n, const I
                            bool is_faint)
 {
     const RadiositySettings *settings = &eye->scene->settings.radiosity;
+    if (eye->options.is_progressive)
+        return final_gather_few(eye, &s->at, n, inside);
     if (!eye->options.cache)
         return gather_point(eye, s, n, inside, is_faint);
     double error = settings->error_bound * ERROR_UNIT;

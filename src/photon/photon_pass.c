@@ -110,7 +110,9 @@ static Status make_map(const Tracer *tracer, MapKind kind, const PhotonOptions *
     stats->seconds[PHASE_PHOTON_EMIT] += clock_wall() - started;
     if (status == OK)
         status = emit_and_build(&emission, kind, stats, map);
-    if (status == OK && kind == MAP_GLOBAL && *map && emission.rules.keeps_first)
+    bool is_looked_up =
+        emission.rules.keeps_first && !plan_has(tracer_plan(tracer), FEATURE_PROGRESSIVE);
+    if (status == OK && kind == MAP_GLOBAL && *map && is_looked_up)
         status = make_irradiance(&emission, stats, maps);
     if (status == OK)
         take_books(&emission, kind, &maps->books);

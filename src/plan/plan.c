@@ -310,16 +310,14 @@ static bool sky_shines(const Scene *scene)
 static void plan_indirect_method(const Scene *scene, const PlanOptions *options, Plan *plan)
 {
     static const char *const off[] = {"no indirect light from photons",
-                                      "the global map is looked at directly",
-                                      "gathered everywhere"};
+                                      "the global map is looked at directly", "gathered everywhere",
+                                      "every pass gathers anew"};
     const PmsSettings *pms = &scene->settings.pms;
     PlanRow *gather = &plan->rows[FEATURE_FINAL_GATHER];
     PlanRow *cache = &plan->rows[FEATURE_IRRADIANCE_CACHE];
     const PlanRow *map = &plan->rows[FEATURE_GLOBAL_MAP];
     IndirectMethod method = options->indirect ? options->indirect : pms->method;
     bool is_progressive = plan_has(plan, FEATURE_PROGRESSIVE);
-    if (is_progressive && method == INDIRECT_ANY) /* whose mean needs no gather rays */
-        method = INDIRECT_MAP;
     const char *asked = options->indirect ? "asked for on the command line"
                         : pms->method     ? "gi_method in pms{}"
                                       : "the way indirect light is found if nothing else is said";
@@ -330,8 +328,8 @@ static void plan_indirect_method(const Scene *scene, const PlanOptions *options,
         return;
     }
     row_set(gather, true, map->why, "%s", asked);
-    row_set(cache, method != INDIRECT_GATHER, map->why, "%s",
-            method != INDIRECT_GATHER ? asked : off[2]);
+    bool has_cache = method != INDIRECT_GATHER && !is_progressive;
+    row_set(cache, has_cache, map->why, "%s", has_cache ? asked : off[is_progressive ? 3 : 2]);
 }
 
 static void plan_glow(const Scene *scene, Plan *plan)

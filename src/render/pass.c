@@ -10,7 +10,7 @@
 
 /* Photons within the gather radius of the first of many passes, where the map is of common
  * density (photon_map_radius).  Fewer than in a single pass: their noise is averaged away. */
-enum { SERIES_PHOTONS = 20 };
+enum { SERIES_PHOTONS = 12 };
 
 typedef struct Pass {
     const Tracer *tracer;

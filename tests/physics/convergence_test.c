@@ -132,13 +132,19 @@ static void even_light_is_right_from_the_first_pass(void **state)
 static void a_closed_sphere_is_evenly_lit(void **state)
 {
     (void)state;
-    check_even("closed sphere",
-               "#version 3.7; global_settings { assumed_gamma 1 max_trace_level 50\n"
-               "  pms { gi on global_photons 4000 } }\n"
-               "camera { location <0,0.3,0> look_at <0,0.2,1> angle 90 }\n"
-               "light_source { 0 rgb 1 }\n"
-               "sphere { 0, 1 hollow pigment { rgb 1 } finish { ambient 0 diffuse 0.5 } }\n",
-               0, 1);
+    const char *const methods[] = {"gather", "map"};
+    for (int i = 0; i < 2; i++) {
+        char text[1024], what[100];
+        snprintf(text, sizeof text,
+                 "#version 3.7; global_settings { assumed_gamma 1 max_trace_level 50\n"
+                 "  pms { gi on gi_method %s global_photons 4000 } }\n"
+                 "camera { location <0,0.3,0> look_at <0,0.2,1> angle 90 }\n"
+                 "light_source { 0 rgb 1 }\n"
+                 "sphere { 0, 1 hollow pigment { rgb 1 } finish { ambient 0 diffuse 0.5 } }\n",
+                 methods[i]);
+        snprintf(what, sizeof what, "closed sphere, gi_method %s", methods[i]);
+        check_even(what, text, 0, 1);
+    }
 }
 
 /* --- a caustic ------------------------------------------------------------------------------ */
