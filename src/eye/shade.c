@@ -6,6 +6,7 @@
 #include "eye/air_int.h"
 
 #include "base/work.h"
+#include "math/sample.h"
 #include "math/spectrum.h"
 
 /* Surfaces one path may pass: straight ones do not count as trace levels, so a stack of
@@ -175,11 +176,15 @@ static void add_air(EyeThread *eye, Path *path, double length, Radiance *out)
     path->weight *= rgb_max(veil.through);
 }
 
-/* Follow the bands of light that a surface disperses, each on its own. */
+/* Follow the bands of light that a surface disperses, each on its own.  In one of many passes they
+ * are moved along the spectrum, so that the mean has no bands. */
 static void split(EyeThread *eye, const Path *path, const Hit *hit, int bands, Radiance *out)
 {
-    for (int i = 0; i < bands; i++) {
-        SpectrumBand band = spectrum_band(i, bands);
+    bool is_moved = eye->options.is_progressive;
+    double shift = is_moved ? sample_1d(eye->path.index, eye->path.wave) : 0;
+    for (int i = 0; i < bands + is_moved; i++) {
+        SpectrumBand band =
+            is_moved ? spectrum_band_moved(i, bands, shift) : spectrum_band(i, bands);
         SurfaceSample s;
         Path part = *path;
         part.inside.wavelength = (float)band.wavelength;

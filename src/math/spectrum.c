@@ -63,13 +63,27 @@ static Curves areas(double wavelength)
     return out;
 }
 
+/* The colour of the light between two wavelengths. */
+static Rgb color_between(double first, double last)
+{
+    Curves from = areas(first), to = areas(last);
+    return rgb((float)(to.rgb[0] - from.rgb[0]), (float)(to.rgb[1] - from.rgb[1]),
+               (float)(to.rgb[2] - from.rgb[2]));
+}
+
 SpectrumBand spectrum_band(int i, int n)
 {
     double width = (SPECTRUM_LAST - SPECTRUM_FIRST) / n;
-    Curves from = areas(SPECTRUM_FIRST + i * width), to = areas(SPECTRUM_FIRST + (i + 1) * width);
-    return (SpectrumBand){SPECTRUM_FIRST + (i + 0.5) * width,
-                          rgb((float)(to.rgb[0] - from.rgb[0]), (float)(to.rgb[1] - from.rgb[1]),
-                              (float)(to.rgb[2] - from.rgb[2]))};
+    Rgb color = color_between(SPECTRUM_FIRST + i * width, SPECTRUM_FIRST + (i + 1) * width);
+    return (SpectrumBand){SPECTRUM_FIRST + (i + 0.5) * width, color};
+}
+
+SpectrumBand spectrum_band_moved(int i, int n, double shift)
+{
+    double width = (SPECTRUM_LAST - SPECTRUM_FIRST) / n, start = SPECTRUM_FIRST - shift * width;
+    double first = fmax(SPECTRUM_FIRST, start + i * width);
+    double last = fmin(SPECTRUM_LAST, start + (i + 1) * width);
+    return (SpectrumBand){0.5 * (first + last), color_between(first, last)};
 }
 
 static double sum(Curves c)

@@ -21,6 +21,10 @@ typedef struct SpectrumBand {
 /* Return band i of n. */
 SpectrumBand spectrum_band(int i, int n);
 
+/* Return band i of n + 1: those of n bands moved by -`shift` of one, in [0,1), and what is left at
+ * the ends.  Over all shifts no wavelength is before others. */
+SpectrumBand spectrum_band_moved(int i, int n, double shift);
+
 /* Choose a wavelength in proportion to what it gives to red, green and blue together; u is in
  * [0,1).  *color is its colour over the density of the choice, so its mean is white. */
 double spectrum_choose(double u, Rgb *color);

@@ -37,6 +37,31 @@ static void bands_add_up_to_white(void **state)
     }
 }
 
+/* Moved bands too, and each reaches over its own part: over all shifts the colour at a wavelength
+ * is spread over a band's width at most. */
+static void moved_bands_add_up_to_white(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 50; k++) {
+        double shift = k / 50.0, sum[3] = {0}, last = 379.999;
+        for (int i = 0; i <= 7; i++) {
+            SpectrumBand band = spectrum_band_moved(i, 7, shift);
+            assert_true(band.wavelength > last && band.wavelength <= 730);
+            assert_true(band.wavelength - last <= 50.001);
+            last = band.wavelength;
+            sum[0] += (double)band.color.r;
+            sum[1] += (double)band.color.g;
+            sum[2] += (double)band.color.b;
+            if (shift == 0 && i < 7) {
+                assert_near(band.color, spectrum_band(i, 7).color, 1e-6);
+                assert_true(fabs(band.wavelength - spectrum_band(i, 7).wavelength) < 1e-9);
+            }
+        }
+        for (int c = 0; c < 3; c++)
+            assert_true(fabs(sum[c] - 1) < 1e-6);
+    }
+}
+
 /* The seven bands of POV-Ray 3.7, read off 16-bit pixels; there they add up to .9938, 1, .9962. */
 static void bands_are_those_of_the_language(void **state)
 {
@@ -137,6 +162,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bands_add_up_to_white),
+        cmocka_unit_test(moved_bands_add_up_to_white),
         cmocka_unit_test(bands_are_those_of_the_language),
         cmocka_unit_test(chosen_wavelengths_are_white_together),
         cmocka_unit_test(the_languages_dispersion),
