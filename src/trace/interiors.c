@@ -44,7 +44,7 @@ static void drop(Interiors *list, int entry)
 }
 
 /* Add an entry behind those of its priority.  When the list is full the outermost goes. */
-static void push(Interiors *list, const Interior *interior, uint32_t object)
+void interiors_enter(Interiors *list, const Interior *interior, uint32_t object)
 {
     if (list->count == INTERIORS_MAX)
         drop(list, 0);
@@ -55,6 +55,14 @@ static void push(Interiors *list, const Interior *interior, uint32_t object)
     }
     list->in[at] = interior;
     list->object[at] = object;
+}
+
+bool interiors_leave(Interiors *list, const Interior *interior, uint32_t object)
+{
+    int entry = entry_of(list, object, interior);
+    if (entry >= 0)
+        drop(list, entry);
+    return entry >= 0;
 }
 
 /* Copy the used part only. */
@@ -112,12 +120,11 @@ static bool leave(const Tracer *tracer, const Passage *passage, Interiors *list,
         return false;
     if (is_closed && passage->is_entering)
         return true;
-    int entry = entry_of(list, passage->object, passage->interior);
-    if (entry >= 0)
-        drop(list, entry);
-    else if (!is_closed)
+    if (interiors_leave(list, passage->interior, passage->object))
+        return false;
+    if (!is_closed)
         return true;
-    else if (!*from || (*from)->priority <= passage->interior->priority)
+    if (!*from || (*from)->priority <= passage->interior->priority)
         *from = passage->interior;
     return false;
 }
@@ -132,7 +139,7 @@ InteriorStep interiors_pass(const Tracer *tracer, const Passage *passages, int c
         is_entered[i] = leave(tracer, &passages[i], after, &from);
     for (int i = 0; i < count; i++)
         if (is_entered[i])
-            push(after, passages[i].interior, passages[i].object);
+            interiors_enter(after, passages[i].interior, passages[i].object);
     const Interior *to = innermost(after);
     InteriorStep step = {.ior_from = from ? from->ior : 1, .ior_to = to ? to->ior : 1};
     if (tracer->has_dispersion)

@@ -2,8 +2,8 @@
  *
  * One pass over the index looks for anything opaque and notes the objects that let light
  * through; in most scenes that is all.  Otherwise the surfaces of the noted objects are
- * visited in order of t (each object keeps its next crossing) and filter the light, and an
- * interior absorbs along the stretch that ends where the ray leaves it.
+ * visited in order of t (each object keeps its next crossing) and filter the light.  What the ray
+ * is in between them absorbs; that it began inside something shows where it leaves that.
  * SPDX-License-Identifier: Apache-2.0 */
 #include "trace/media_along.h"
 #include "trace/trace_int.h"
@@ -179,8 +179,8 @@ static bool is_blocking_target(const ShadowQuery *query, const Surface *surface)
                         : surface->photons.refraction == TRI_ON;
 }
 
-/* Return what passes one crossing; `since` is t of the crossing before it. */
-static Rgb crossing_filter(const ShadowQuery *query, Filter *filter, const Ray *ray, double since)
+/* Return what passes one crossing. */
+static Rgb crossing_filter(const ShadowQuery *query, const Filter *filter, const Ray *ray)
 {
     const Crossing *crossing = &filter->next;
     const Surface *surface = &query->tracer->scene->surfaces[crossing->leaf->surface];
@@ -188,31 +188,71 @@ static Rgb crossing_filter(const ShadowQuery *query, Filter *filter, const Ray *
     if (!plan_filters_shadow(query->tracer->plan, surface) || is_blocking_target(query, surface))
         return RGB_BLACK;
     /* The point is needed only if something depends on it. */
-    bool is_closed = query->tracer->objects[filter->object].is_closed;
-    if (is_closed && !surface->mesh_textures && !surface->inner_texture &&
-        interior->caustics == 0 && interior->fade_distance == 0 &&
+    if (!surface->mesh_textures && !surface->inner_texture && interior->caustics == 0 &&
         is_solid_texture(surface->texture))
         return texture_filter(surface->texture, interior, v3(0, 0, 0), 0);
 
     ShapePoint point;
     shape_point(crossing, ray, &point);
-    bool is_back = v3_dot(point.ng, ray->d) > 0, is_leaving = is_back;
-    if (!is_closed) {
-        is_leaving = filter->is_started ? filter->is_inside : is_back;
-        filter->is_started = true;
-        filter->is_inside = !is_leaving;
-    }
     TextureChoice choice;
-    texture_choose(surface, crossing->leaf, crossing->part, crossing->u, crossing->v, is_back,
-                   &choice);
+    texture_choose(surface, crossing->leaf, crossing->part, crossing->u, crossing->v,
+                   v3_dot(point.ng, ray->d) > 0, &choice);
     Rgb sum = RGB_BLACK;
     for (int i = 0; i < choice.count; i++)
         sum =
             rgb_mad(sum, choice.weight[i],
                     texture_filter(choice.texture[i], interior, point.p, v3_dot(point.ns, ray->d)));
-    if (is_leaving)
-        sum = rgb_mul(sum, interior_fade(interior, crossing->t - since, true));
     return sum;
+}
+
+/* The stretches between crossings. */
+typedef struct Legs {
+    Interiors inside; /* entered on the way */
+    double since;     /* t of the last crossing */
+    double open;      /* length gone in nothing that was entered on the way */
+} Legs;
+
+/* Which way does the line go through a surface: 1 in, -1 out, 0 neither? */
+static int crossing_way(const ShadowQuery *query, Filter *filter, const Ray *ray)
+{
+    if (query->tracer->objects[filter->object].is_closed)
+        return filter->next.leaf_change;
+    ShapePoint point;
+    if (!filter->is_started) {
+        shape_point(&filter->next, ray, &point);
+        filter->is_inside = v3_dot(point.ng, ray->d) > 0;
+    }
+    filter->is_started = true;
+    filter->is_inside = !filter->is_inside;
+    return filter->is_inside ? 1 : -1;
+}
+
+static Rgb absorbed(const Interiors *inside, double length)
+{
+    return interior_fade(inside->in[inside->count - 1], length, true);
+}
+
+/* End a leg at the crossing of a filter; returns what its interior, and one that the ray turns out
+ * to have begun in, let through. */
+static Rgb end_leg(const ShadowQuery *query, Filter *filter, const Ray *ray, Legs *legs)
+{
+    Rgb passed = RGB_WHITE;
+    const Crossing *crossing = &filter->next;
+    const Interior *interior = query->tracer->scene->surfaces[crossing->leaf->surface].interior;
+    double length = crossing->t - legs->since;
+    legs->since = crossing->t;
+    if (legs->inside.count > 0)
+        passed = absorbed(&legs->inside, length);
+    else
+        legs->open += length;
+    int way = crossing_way(query, filter, ray);
+    if (way > 0) {
+        interiors_enter(&legs->inside, interior, filter->object);
+    } else if (way < 0 && !interiors_leave(&legs->inside, interior, filter->object)) {
+        passed = rgb_mul(passed, interior_fade(interior, legs->open, true));
+        legs->open = 0;
+    }
+    return passed;
 }
 
 /* Move a filter to its first crossing behind t; drop it when there is none. */
@@ -229,7 +269,10 @@ static void advance(ShadowQuery *query, int i, const Ray *ray, double t)
 static Rgb walk_filters(ShadowQuery *query, const Ray *ray)
 {
     Rgb light = RGB_WHITE;
-    double since = 0;
+    Legs legs;
+    legs.inside.count = 0;
+    legs.since = legs.open = 0;
+    bool absorbs = plan_has(query->tracer->plan, FEATURE_ABSORPTION);
     for (int i = query->count - 1; i >= 0; i--)
         advance(query, i, ray, ray->tmin);
     while (query->count > 0 && !rgb_is_black(light)) {
@@ -239,11 +282,14 @@ static Rgb walk_filters(ShadowQuery *query, const Ray *ray)
             if (a->next.t < b->next.t || (a->next.t == b->next.t && a->object < b->object))
                 nearest = i;
         }
-        double t = query->filters[nearest].next.t;
-        light = rgb_mul(light, crossing_filter(query, &query->filters[nearest], ray, since));
-        since = t;
-        advance(query, nearest, ray, t);
+        Filter *filter = &query->filters[nearest];
+        light = rgb_mul(light, crossing_filter(query, filter, ray));
+        if (absorbs)
+            light = rgb_mul(light, end_leg(query, filter, ray, &legs));
+        advance(query, nearest, ray, filter->next.t);
     }
+    if (legs.inside.count > 0) /* the light stands in something */
+        light = rgb_mul(light, absorbed(&legs.inside, ray->tmax - legs.since));
     return light;
 }
 

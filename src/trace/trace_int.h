@@ -106,6 +106,10 @@ typedef struct InteriorStep {
 InteriorStep interiors_pass(const Tracer *tracer, const Passage *passages, int count,
                             const Interiors *before, Interiors *after);
 
+/* Add what is entered to a list; take off what is left, returning false if it was not there. */
+void interiors_enter(Interiors *list, const Interior *interior, uint32_t object);
+bool interiors_leave(Interiors *list, const Interior *interior, uint32_t object);
+
 /* Return which way a crossing at a point leads. */
 static inline bool crossing_is_entering(const Crossing *crossing, V3 ng, V3 d)
 {

@@ -35,6 +35,7 @@ static inline void world_init(World *w)
     w->scene.settings.irid_wavelength = rgb(0.70f, 0.52f, 0.48f);
     w->scene.settings.ambient_light = RGB_WHITE;
     w->plan.rows[FEATURE_TRANSPARENT_SHADOWS].is_on = true;
+    w->plan.rows[FEATURE_ABSORPTION].is_on = true;
     diag_init(&w->diag, NULL, NULL);
 }
 
