@@ -101,9 +101,31 @@ static float part_of(Rgb share)
     return rgb_max_abs(share);
 }
 
+static void go_through(GatherRay *way, const SurfaceSample *s, Rgb share)
+{
+    way->weight = rgb_mul(way->weight, share);
+    if (!s->is_total_reflection) {
+        way->inside = s->inside_after;
+        way->weight = rgb_scale(way->weight, (float)(s->ior_ratio * s->ior_ratio));
+    }
+    way->ray = trace_ray_from(&s->at, s->transmit_dir);
+}
+
+/* Go through a surface that disperses; returns false when the wavelength chosen does not pass. */
+static bool disperse(EyeThread *eye, GatherRay *way, const Hit *hit)
+{
+    Rgb color;
+    SurfaceSample wave;
+    if (!surface_sample_wave(&eye->trace, &way->ray, hit, &way->inside, rng_double(&eye->rng),
+                             &wave, &color))
+        return false;
+    go_through(way, &wave, rgb_mul(color, wave.through));
+    return true;
+}
+
 /* Turn the ray into one of those that go on through the surface or off it, with the chance of how
  * much they bring; returns false if it ends there. */
-static bool go_on(EyeThread *eye, GatherRay *way, const SurfaceSample *s)
+static bool go_on(EyeThread *eye, GatherRay *way, const Hit *hit, const SurfaceSample *s)
 {
     Rgb through = s->is_total_reflection ? RGB_WHITE : s->filter;
     float transmit = s->has_transmission ? part_of(through) : 0, total = transmit;
@@ -115,12 +137,10 @@ static bool go_on(EyeThread *eye, GatherRay *way, const SurfaceSample *s)
     float scale = total / most; /* a share of part p is taken with the chance p / scale */
     x *= scale;
     if (x < transmit) {
-        way->weight = rgb_mul(way->weight, rgb_scale(through, scale / transmit));
-        if (!s->is_total_reflection) {
-            way->inside = s->inside_after;
-            way->weight = rgb_scale(way->weight, (float)(s->ior_ratio * s->ior_ratio));
-        }
-        way->ray = trace_ray_from(&s->at, s->transmit_dir);
+        way->weight = rgb_scale(way->weight, scale / transmit);
+        if (s->spectrum > 0)
+            return disperse(eye, way, hit);
+        go_through(way, s, through);
         return true;
     }
     x -= transmit;
@@ -135,13 +155,6 @@ static bool go_on(EyeThread *eye, GatherRay *way, const SurfaceSample *s)
         x -= part;
     }
     return false;
-}
-
-static void fade(GatherRay *way, double t)
-{
-    if (way->inside.count > 0)
-        way->weight =
-            rgb_mul(way->weight, interior_fade(way->inside.in[way->inside.count - 1], t, false));
 }
 
 static Rgb limited(Rgb light, double most)
@@ -166,7 +179,7 @@ static Rgb follow(EyeThread *eye, GatherRay *way, double *distance)
             }
             break;
         }
-        fade(way, hit.t);
+        way->weight = rgb_mul(way->weight, interiors_fade(&way->inside, hit.t));
         length += hit.t;
         if (i == 0)
             *distance = hit.t;
@@ -174,7 +187,7 @@ static Rgb follow(EyeThread *eye, GatherRay *way, double *distance)
         Rgb light =
             rgb_add(surface_glow(eye->trace.tracer, &s), reflected_light(eye, way, &s, length));
         sum = rgb_add(sum, rgb_mul(way->weight, light));
-        if (!go_on(eye, way, &s))
+        if (!go_on(eye, way, &hit, &s))
             break;
     }
     return limited(sum, eye->scene->settings.radiosity.max_sample);
@@ -258,6 +271,7 @@ static void gather_cell(Cells *cells, EyeThread *eye, const ShapePoint *at, V3 n
             continue;
         GatherRay way = {
             .ray = trace_ray_from(at, d), .inside = *inside, .weight = RGB_WHITE, .depth = depth};
+        way.inside.wavelength = 0; /* what is gathered serves rays of all wavelengths */
         double distance;
         Rgb found = follow(eye, &way, &distance);
         light[0] += found.r / (float)rays;

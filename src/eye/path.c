@@ -17,7 +17,6 @@
 
 #include "base/work.h"
 #include "math/sample.h"
-#include "math/spectrum.h"
 
 enum {
     PATH_SURFACES_MAX = 10000, /* a guard; few paths come near it */
@@ -161,25 +160,16 @@ static bool stops_shadow_rays(const EyeThread *eye, const Hit *hit)
     return !passes;
 }
 
-/* Where light is dispersed, give the path a wavelength and evaluate the surface for that; returns
- * false if it does not pass. */
-static bool choose_wave(EyeThread *eye, Path *path, const Hit *hit, SurfaceSample *out)
-{
-    Rgb color;
-    double u = sample_1d(eye->path.index, eye->path.wave);
-    path->inside.wavelength = (float)spectrum_choose(u, &color);
-    surface_sample(&eye->trace, &path->ray, hit, &path->inside, out);
-    weigh(path, color);
-    path->transmit *= rgb_grey(color);
-    return out->has_transmission;
-}
-
 static bool go_through(EyeThread *eye, Path *path, const Hit *hit, const SurfaceSample *s, float p)
 {
     SurfaceSample wave;
     if (s->spectrum > 0) {
-        if (!choose_wave(eye, path, hit, &wave))
+        Rgb color;
+        if (!surface_sample_wave(&eye->trace, &path->ray, hit, &path->inside,
+                                 sample_1d(eye->path.index, eye->path.wave), &wave, &color))
             return false;
+        weigh(path, color);
+        path->transmit *= rgb_grey(color);
         s = &wave;
     }
     path->ray = trace_ray_from(&s->at, s->transmit_dir);

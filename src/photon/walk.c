@@ -3,7 +3,6 @@
 #include "photon/walk_int.h"
 
 #include "base/mem.h"
-#include "math/spectrum.h"
 
 /* Surfaces one path may pass: straight ones do not count as levels. */
 enum { PATH_SURFACES_MAX = 10000 };
@@ -257,9 +256,8 @@ static bool disperse(Walk *walk, const Hit *hit, double p_transmit)
 {
     Rgb color;
     SurfaceSample s;
-    walk->inside.wavelength = (float)spectrum_choose(next_wave(walk), &color);
-    surface_sample(walk->thread, &walk->ray, hit, &walk->inside, &s);
-    if (!s.has_transmission)
+    if (!surface_sample_wave(walk->thread, &walk->ray, hit, &walk->inside, next_wave(walk), &s,
+                             &color))
         return false;
     transmit(walk, &s, rgb_scale(rgb_mul(color, not_negative(s.through)), (float)(1 / p_transmit)));
     return true;

@@ -333,3 +333,11 @@ void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit, const I
     if (tracer->has_dispersion && interiors->wavelength == 0)
         disperse(thread, &s);
 }
+
+bool surface_sample_wave(TraceThread *thread, const Ray *ray, const Hit *hit, Interiors *interiors,
+                         double u, SurfaceSample *out, Rgb *color)
+{
+    interiors->wavelength = (float)spectrum_choose(u, color);
+    surface_sample(thread, ray, hit, interiors, out);
+    return out->has_transmission;
+}

@@ -156,6 +156,12 @@ typedef struct SurfaceSample {
 void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit, const Interiors *interiors,
                     SurfaceSample *out);
 
+/* Give light that a hit disperses a wavelength, chosen by u in [0,1), and evaluate the surface for
+ * it.  The wavelength goes into `interiors`; *color is to be weighed with and has the mean white.
+ * Returns false if none of that wavelength passes. */
+bool surface_sample_wave(TraceThread *thread, const Ray *ray, const Hit *hit, Interiors *interiors,
+                         double u, SurfaceSample *out, Rgb *color);
+
 /* Return the fraction of the light that goes from p (pushed off its surface) towards `to` for
  * `distance` scene units and arrives: black when blocked, filtered by what is transparent.
  *
