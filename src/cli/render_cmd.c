@@ -97,7 +97,9 @@ static Status render_loaded(Job *job, const RenderOptions *options)
     Status written = OK;
     if (status == OK || result.image.layer_count > 0)
         written = write_all(job, &result);
-    if (status == ERR_INTERRUPTED && written == OK)
+    if (written == ERR_INTERRUPTED)
+        diag_fail(job->args->diag, written, "interrupted; the picture was not written");
+    else if (status == ERR_INTERRUPTED)
         tell_interrupted(job, &result);
     render_result_done(&result);
     return status != OK ? status : written;

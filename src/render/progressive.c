@@ -290,5 +290,7 @@ Status progressive_render(const Tracer *tracer, const RenderOptions *options, do
     Status status = run_series(&s);
     film_sum_done(&s.sum);
     film_done(&s.film);
+    if (out->image.layer_count == 0) /* a failure leaves nothing */
+        photon_books_done(&out->books);
     return status;
 }

@@ -28,8 +28,8 @@ static void ignore(void *ctx, const char *text)
     (void)ctx, (void)text;
 }
 
-/* Load and render with a single thread; returns the status. */
-static Status attempt(void)
+/* Load and render with a single thread, in some passes or (0) at once; returns the status. */
+static Status attempt(uint64_t passes)
 {
     Diag diag;
     diag_init(&diag, ignore, NULL);
@@ -38,6 +38,8 @@ static Status attempt(void)
     options.width = 8;
     options.height = 6;
     options.layers = LAYER_DIRECT | LAYER_CAUSTIC;
+    options.plan.is_progressive = passes > 0;
+    options.progressive.passes = passes;
     Scene *scene = NULL;
     Status status = sdl_load_text(&diag, "fault.pms", scene_text, strlen(scene_text), &sdl, &scene);
     if (status == OK) {
@@ -51,15 +53,14 @@ static Status attempt(void)
     return status;
 }
 
-static void test_each_allocation(void **state)
+static void try_each(uint64_t passes)
 {
-    (void)state;
     enum { MANY = 100000 };
-    assert_int_equal(attempt(), OK);
+    assert_int_equal(attempt(passes), OK);
     int successes = 0, n = 1;
     for (; n < MANY && !successes; n += n < 200 ? 1 : n / 50) {
         mem_fail_from(n);
-        Status status = attempt();
+        Status status = attempt(passes);
         mem_fail_from(0);
         assert_true(status == OK || status == ERR_MEMORY || status == ERR_LIBRARY);
         successes += status == OK;
@@ -68,8 +69,21 @@ static void test_each_allocation(void **state)
     assert_true(successes > 0 && n > 20);
 }
 
+static void test_each_allocation(void **state)
+{
+    (void)state;
+    try_each(0);
+}
+
+static void test_each_allocation_of_passes(void **state)
+{
+    (void)state;
+    try_each(2);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_each_allocation)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_each_allocation),
+                                       cmocka_unit_test(test_each_allocation_of_passes)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
