@@ -1,6 +1,6 @@
 #!/usr/bin/perl
-# Equal error: how long photons, paths and povray take to be as wrong as each other, on a caustic
-# and on the indirect light of a room.
+# Row S16: equal error, how long photons, paths and povray take to be as wrong as each other, on a
+# caustic and on the indirect light of a room.
 #
 # Error is the root mean square over the picture, or over a rectangle around the caustic.  Caustics
 # are compared with pictures of very many photons, each program's with its own, so that neither
