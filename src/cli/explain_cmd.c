@@ -64,9 +64,9 @@ static void print_passes(const Explanation *e)
     if (!progressive->passes && !(progressive->seconds > 0))
         printf("until Ctrl-C");
     printf("; %d sample%s a pixel in each", samples, samples == 1 ? "" : "s");
-    if (e->books.caustic || e->books.global)
+    if (e->books.caustic || e->books.global || e->books.volume)
         printf(", and these photons");
-    if ((e->books.caustic || e->books.global) && progressive->passes)
+    if ((e->books.caustic || e->books.global || e->books.volume) && progressive->passes)
         printf("; the last gather radius is %.3g of the first",
                progressive_shrink(progressive->passes));
     printf("\n");
@@ -80,7 +80,8 @@ static void print_text(const Explanation *e)
     print_features(e);
     print_lights("caustic", e->books.caustic, e->books.caustic_count);
     print_lights("global", e->books.global, e->books.global_count);
-    if (!e->books.caustic && !e->books.global)
+    print_lights("volume", e->books.volume, e->books.volume_count);
+    if (!e->books.caustic && !e->books.global && !e->books.volume)
         printf("\nno photon pass\n");
     print_passes(e);
 }
@@ -139,6 +140,7 @@ static void print_json(const Explanation *e)
     printf("\n  ]");
     print_json_lights("caustic", e->books.caustic, e->books.caustic_count);
     print_json_lights("global", e->books.global, e->books.global_count);
+    print_json_lights("volume", e->books.volume, e->books.volume_count);
     print_json_passes(e);
     printf("\n}\n");
 }

@@ -62,9 +62,10 @@ static void header_fill(Header *header, const Args *args, const Scene *scene,
     header_add(header, "pms.integrator",
                plan_has(&result->plan, FEATURE_PATHS) ? "path, light_radius %.17g" : "photons",
                result->plan.light_radius);
-    header_add(header, "pms.photons", "caustic %llu, global %llu",
+    header_add(header, "pms.photons", "caustic %llu, global %llu, volume %llu",
                (unsigned long long)result->stats.count[STAT_PHOTONS_CAUSTIC],
-               (unsigned long long)result->stats.count[STAT_PHOTONS_GLOBAL]);
+               (unsigned long long)result->stats.count[STAT_PHOTONS_GLOBAL],
+               (unsigned long long)result->stats.count[STAT_PHOTONS_VOLUME]);
     if (result->passes)
         header_add(
             header, "pms.passes", "%llu; gather radius caustic %.9g to %.9g, global %.9g to %.9g",

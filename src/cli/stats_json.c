@@ -79,6 +79,7 @@ static void print_passes(FILE *file, const RenderResult *result)
             result->passes, result->new_passes);
     print_radii(file, "caustic_radius", result->first_radii.caustic, result->last_radii.caustic);
     print_radii(file, "global_radius", result->first_radii.global, result->last_radii.global);
+    print_radii(file, "volume_radius", result->first_radii.volume, result->last_radii.volume);
     fputs("},\n", file);
 }
 
@@ -100,5 +101,8 @@ void stats_print_json(FILE *file, const Scene *scene, const RenderResult *result
     fputs(",\n", file);
     print_books(file, "global", result->books.global, result->books.global_count,
                 result->global_hash);
+    fputs(",\n", file);
+    print_books(file, "volume", result->books.volume, result->books.volume_count,
+                result->volume_hash);
     fputs("\n  }\n}\n", file);
 }

@@ -130,6 +130,12 @@ static void add_media(EyeThread *eye, const MediaHere *here, const Ray *ray, dou
     Rgb light = glow(&profile);
     if (plan_has(eye->plan, FEATURE_LIGHTS))
         media_scatter(eye, here, &profile, ray, &light);
+    if (eye->options.volume && !here->is_conserving) {
+        Rgb found[PART_COUNT] = {RGB_BLACK};
+        media_photons(eye, here, &profile, ray, found);
+        for (int i = 0; i < PART_COUNT; i++)
+            veil->light[i] = rgb_add(veil->light[i], rgb_mul(veil->through, found[i]));
+    }
     add_layer(veil, media_clear(profile.depth), light);
 }
 

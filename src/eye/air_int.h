@@ -26,6 +26,10 @@ Rgb air_clear(EyeThread *eye, const Ray *ray, double length, const Interiors *in
 void media_scatter(EyeThread *eye, const MediaHere *here, const MediaProfile *profile,
                    const Ray *ray, Rgb *light);
 
+/* Add the light of the photons in the media along a ray to the parts of *out it belongs to. */
+void media_photons(EyeThread *eye, const MediaHere *here, const MediaProfile *profile,
+                   const Ray *ray, Rgb light[PART_COUNT]);
+
 /* The part of a ray, from begin to end, on which a light can shine; returns false if none is. */
 bool light_stretch(const Light *light, const Ray *ray, double *begin, double *end);
 

@@ -10,6 +10,7 @@
 #include "eye/photon_reach.h"
 #include "photon/gather.h"
 #include "photon/irradiance.h"
+#include "photon/volume.h"
 #include "trace/trace.h"
 
 /* Light by where it comes from; the parts add up to the beauty. */
@@ -30,6 +31,7 @@ typedef struct EyeOptions {
     const PhotonMap *caustic, *global; /* NULL: none */
     const IrradianceMap *irradiance;   /* for final gathering; NULL: it finds glow alone */
     const struct IrradianceCache *cache; /* NULL: gather everywhere */
+    const VolumeIndex *volume;         /* photons in media; NULL: none */
     const PhotonReach *caustic_reach;  /* for caustic_limits */
     GatherLimits caustic_limits, global_limits;
 } EyeOptions;

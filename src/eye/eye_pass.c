@@ -27,6 +27,8 @@ static EyeLight eye_light(const EyeThread *eye, int index)
         .makes_caustics = plan->light_makes_caustics[index] && has_caustics &&
                           light->photon_refraction != TRI_OFF,
         .lights_media = light->lights_media && !light->is_shadowless,
+        .makes_volume = plan->light_makes_caustics[index] && plan->has_volume_focus &&
+                        eye->options.volume && light->photon_refraction != TRI_OFF,
     };
 }
 

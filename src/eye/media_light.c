@@ -12,7 +12,8 @@ enum {
     HALVINGS_MAX = 10,                /* of a piece */
     CELLS_SMALL = 32,                 /* more cells than these are small enough as they are */
     BREAKS_BY_ANGLE = 8,
-    PLACES_MAX = 128 /* shadow rays to one light for one ray */
+    PLACES_FIRST_MAX = 64,
+    PLACES_MAX = 256 /* shadow rays to one light for one ray */
 };
 
 /* Pieces of the light are halved until their sum is known to this part of the whole. */
@@ -317,14 +318,16 @@ static bool refine(Scatter *s)
     return true;
 }
 
-/* Light too dim to be worth more than a look is looked at once. */
+/* How many places are looked at first: such that a shadow between two of them, which more places
+ * would not be looked for, is within the tolerance in the mean; and as many as the scene asks for,
+ * unless the light is too dim to matter. */
 static int first_places(const Scatter *s)
 {
-    float all = rgb_sum(s->run.whole);
-    if (all < s->care.tolerance)
-        return 1;
-    int wanted = s->care.cells < PLACES_MAX / 4 ? s->care.cells : PLACES_MAX / 4;
-    return all < s->care.threshold ? (wanted + 1) / 2 : wanted;
+    float most = rgb_max(s->run.whole);
+    int asked = most > s->care.threshold ? s->care.cells : most > s->care.tolerance ? 2 : 1;
+    float needed = ceilf(most / (4 * s->care.tolerance));
+    int places = needed < PLACES_FIRST_MAX ? (int)needed : PLACES_FIRST_MAX;
+    return places > asked ? places : asked;
 }
 
 static float unit(float x)

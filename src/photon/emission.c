@@ -30,7 +30,7 @@ enum { PASS_PHOTON = 0x700, PASS_KEYS = 0x720 };
 static bool takes_part(const Emission *emission, int light)
 {
     const Scene *scene = tracer_scene(emission->tracer);
-    if (emission->rules.map == MAP_CAUSTIC)
+    if (map_is_aimed(emission->rules.map))
         return tracer_plan(emission->tracer)->light_makes_caustics[light];
     return !rgb_is_black(scene->lights[light].color) && scene->lights[light].photon_share > 0;
 }
@@ -203,7 +203,7 @@ static Status make_beams(Emission *emission)
         Beam beam = {.light = &scene->lights[i], .source = i, .spacing_factor = 1};
         if (!takes_part(emission, i))
             continue;
-        if (emission->rules.map == MAP_CAUSTIC) {
+        if (map_is_aimed(emission->rules.map)) {
             is_good = add_target_beams(emission, &capacity, beam);
         } else {
             const WalkRules *rules = &emission->rules;
@@ -216,7 +216,7 @@ static Status make_beams(Emission *emission)
     }
     if (!is_good)
         return diag_no_memory(emission->diag, "photon beams");
-    return emission->rules.map == MAP_GLOBAL ? add_glow(emission, &capacity) : OK;
+    return map_is_aimed(emission->rules.map) ? OK : add_glow(emission, &capacity);
 }
 
 /* --- random numbers --------------------------------------------------------------------- */
@@ -296,7 +296,7 @@ static double photon_spacing(const Emission *emission)
 /* Return how many photons to send, or, before the pilot, at most. */
 static double photons_wanted(const Emission *emission, bool is_after_pilot)
 {
-    if (emission->rules.map == MAP_GLOBAL)
+    if (!map_is_aimed(emission->rules.map))
         return (double)tracer_plan(emission->tracer)->global_photons;
     double spacing = photon_spacing(emission), wanted = 0;
     for (int i = 0; i < emission->beam_count; i++) {
@@ -400,8 +400,10 @@ static void set_rules(Emission *emission, MapKind map)
     const SceneSettings *settings = &scene->settings;
     const PhotonSettings *photons = &settings->photons;
     bool is_endless = false;
-    Bound bound = map == MAP_GLOBAL ? indirect_part(emission->tracer, &is_endless)
-                                    : tracer_bound(emission->tracer);
+    Bound bound = map_is_aimed(map) ? tracer_bound(emission->tracer)
+                                    : indirect_part(emission->tracer, &is_endless);
+    if (map == MAP_FOCUS || map == MAP_VOLUME)
+        bound = bound_add(indirect_part(emission->tracer, &is_endless), scene->camera.location);
     emission->rules =
         (WalkRules){.map = map,
                     .part = bound,
@@ -415,7 +417,8 @@ static void set_rules(Emission *emission, MapKind map)
                     .keeps_first = plan_has(tracer_plan(emission->tracer), FEATURE_FINAL_GATHER),
                     .max_diffuse = INT_MAX,
                     .brightness = (float)settings->radiosity.brightness,
-                    .inside = emission->inside};
+                    .inside = emission->inside,
+                    .has_media = plan_has(tracer_plan(emission->tracer), FEATURE_MEDIA)};
     if (settings->radiosity.recursion_limit > 0) /* the eye's own look, or gather rays, is one */
         emission->rules.max_diffuse = settings->radiosity.recursion_limit - 1;
 }

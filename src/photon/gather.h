@@ -1,4 +1,5 @@
-/* Estimates from a photon map.  The only header of photon/ that the eye pass sees.
+/* Estimates from a photon map.  With volume.h the only header of photon/
+ * that the eye pass sees.
  *
  * What is near: with GATHER_SPHERE the distance d.  With GATHER_DISK the ball is cut to a slab
  * along the tangent plane, GATHER_SLAB radii thick on either side: the distance is the larger

@@ -6,9 +6,29 @@
 #include "photon/emission_int.h"
 #include "photon/gather.h"
 
-static const FeatureId map_feature[MAP_COUNT] = {FEATURE_CAUSTIC_MAP, FEATURE_GLOBAL_MAP};
-static const StatId map_counter[MAP_COUNT] = {STAT_PHOTONS_CAUSTIC, STAT_PHOTONS_GLOBAL};
-static const char *const map_name[MAP_COUNT] = {"caustic", "global"};
+#include <string.h>
+
+static const FeatureId map_feature[MAP_COUNT] = {FEATURE_CAUSTIC_MAP, FEATURE_GLOBAL_MAP,
+                                                 FEATURE_VOLUME_MAP, FEATURE_VOLUME_MAP};
+static const StatId map_counter[MAP_COUNT] = {STAT_PHOTONS_CAUSTIC, STAT_PHOTONS_GLOBAL,
+                                              STAT_PHOTONS_VOLUME, STAT_PHOTONS_VOLUME};
+static const char *const map_name[MAP_COUNT] = {"caustic", "global", "volume", "volume"};
+
+/* Does the plan call for photons of a kind? */
+static bool is_wanted(const Plan *plan, MapKind kind)
+{
+    if (!plan_has(plan, map_feature[kind]))
+        return false;
+    return kind == MAP_FOCUS    ? plan->has_volume_focus
+           : kind == MAP_VOLUME ? plan->has_volume_indirect
+                                : true;
+}
+
+/* Is there a kind that adds to this one's map? */
+static bool is_first_of_map(const Plan *plan, MapKind kind)
+{
+    return kind == MAP_FOCUS && is_wanted(plan, MAP_VOLUME);
+}
 
 /* Places where irradiance is computed ahead: for one, this many photons are sent. */
 enum { IRRADIANCE_PART = 4 };
@@ -47,39 +67,103 @@ static void warn_of_none(const Emission *emission, MapKind kind, const char *rea
                   map_name[kind], reason);
 }
 
-/* Send the photons of a map; *map stays NULL, with a warning, when nothing can be stored. */
-static Status emit_and_build(Emission *emission, MapKind kind, Stats *stats, PhotonMap **map)
+/* Send the photons of a kind and add them to `photons`. */
+static Status emit(Emission *emission, MapKind kind, Stats *stats, PhotonList *photons)
 {
     if (emission->budget == 0) {
         warn_of_none(emission, kind,
-                     kind == MAP_CAUSTIC ? "no light reaches a target"
-                                         : "no light reaches a surface");
+                     map_is_aimed(kind) ? "no light reaches a target"
+                                        : "no light reaches a surface");
         return OK;
     }
-    PhotonList photons;
+    PhotonList sent;
     double started = clock_wall();
-    Status status = emission_run(emission, &photons);
+    Status status = emission_run(emission, &sent);
     stats->seconds[PHASE_PHOTON_EMIT] += clock_wall() - started;
     if (status != OK)
         return status;
     count_paths(emission->books, emission->source_count, kind, stats);
-    if (photons.count == 0) {
-        mem_free(photons.items);
+    if (sent.count == 0)
         warn_of_none(emission, kind, "no photon was stored");
+    if (photons->count == 0) {
+        mem_free(photons->items);
+        *photons = sent;
         return OK;
     }
-    started = clock_wall();
-    status = photon_map_new(emission->diag, photons.items, photons.count, emission->rules.center,
-                            emission->options->threads, map);
+    Photon *all = mem_resize(photons->items, (photons->count + sent.count) * sizeof *all);
+    if (all) {
+        memcpy(all + photons->count, sent.items, sent.count * sizeof *all);
+        photons->items = all;
+        photons->count += sent.count;
+    }
+    mem_free(sent.items);
+    return all ? OK : diag_no_memory(emission->diag, "photons");
+}
+
+/* Make the map of what was sent; *map stays NULL when that is nothing. */
+static Status build(const Emission *emission, Stats *stats, PhotonList *photons, PhotonMap **map)
+{
+    double started = clock_wall();
+    Status status = OK;
+    if (photons->count > 0)
+        status = photon_map_new(emission->diag, photons->items, photons->count,
+                                emission->rules.center, emission->options->threads, map);
+    else
+        mem_free(photons->items);
+    *photons = (PhotonList){0};
     stats->seconds[PHASE_PHOTON_BUILD] += clock_wall() - started;
     return status;
+}
+
+static LightBooks **books_of(PhotonBooks *books, MapKind kind)
+{
+    return kind == MAP_CAUSTIC  ? &books->caustic
+           : kind == MAP_GLOBAL ? &books->global
+                                : &books->volume;
+}
+
+/* Add up the books of two kinds of photons in one map. */
+static void join_books(LightBooks *to, const LightBooks *from)
+{
+    to->power += from->power;
+    to->budget += from->budget;
+    to->emitted += from->emitted;
+    to->stored_paths += from->stored_paths;
+    to->absorbed += from->absorbed;
+    to->escaped += from->escaped;
+    to->cut += from->cut;
+    to->stored += from->stored;
+    to->flux_emitted = rgb_add(to->flux_emitted, from->flux_emitted);
+    to->flux_stored = rgb_add(to->flux_stored, from->flux_stored);
+    to->flux_absorbed = rgb_add(to->flux_absorbed, from->flux_absorbed);
+    to->flux_escaped = rgb_add(to->flux_escaped, from->flux_escaped);
+    to->flux_cut = rgb_add(to->flux_cut, from->flux_cut);
+}
+
+/* Each light's share is then that of the power of both. */
+static void share_joined(LightBooks *books, int lights)
+{
+    double power = 0;
+    for (int i = 0; i < lights; i++)
+        power += books[i].power;
+    for (int i = 0; i < lights; i++)
+        books[i].share = power > 0 ? books[i].power / power : 0;
 }
 
 /* Take over the books of an emission. */
 static void take_books(Emission *emission, MapKind kind, PhotonBooks *out)
 {
-    LightBooks **slot = kind == MAP_CAUSTIC ? &out->caustic : &out->global;
-    *(kind == MAP_CAUSTIC ? &out->caustic_count : &out->global_count) = emission->source_count;
+    LightBooks **slot = books_of(out, kind);
+    int *count = kind == MAP_CAUSTIC  ? &out->caustic_count
+                 : kind == MAP_GLOBAL ? &out->global_count
+                                      : &out->volume_count;
+    LightBooks *before = *slot;
+    for (int i = 0; before && i < *count; i++)
+        join_books(&emission->books[i], &before[i]);
+    if (before)
+        share_joined(emission->books, emission->source_count);
+    mem_free(before);
+    *count = emission->source_count;
     *slot = emission->books;
     emission->books = NULL;
 }
@@ -101,15 +185,19 @@ static Status make_irradiance(Emission *emission, Stats *stats, PhotonMaps *maps
 }
 
 static Status make_map(const Tracer *tracer, MapKind kind, const PhotonOptions *options, Diag *diag,
-                       Stats *stats, PhotonMaps *maps)
+                       Stats *stats, PhotonList *photons, PhotonMaps *maps)
 {
     Emission emission;
     double started = clock_wall();
     Status status = emission_init(&emission, tracer, kind, options, diag);
-    PhotonMap **map = kind == MAP_CAUSTIC ? &maps->caustic : &maps->global;
+    PhotonMap **map = kind == MAP_CAUSTIC  ? &maps->caustic
+                      : kind == MAP_GLOBAL ? &maps->global
+                                           : &maps->volume;
     stats->seconds[PHASE_PHOTON_EMIT] += clock_wall() - started;
     if (status == OK)
-        status = emit_and_build(&emission, kind, stats, map);
+        status = emit(&emission, kind, stats, photons);
+    if (status == OK && !is_first_of_map(tracer_plan(tracer), kind))
+        status = build(&emission, stats, photons, map);
     bool is_looked_up =
         emission.rules.keeps_first && !plan_has(tracer_plan(tracer), FEATURE_PROGRESSIVE);
     if (status == OK && kind == MAP_GLOBAL && *map && is_looked_up)
@@ -176,11 +264,15 @@ Status photon_pass(const Tracer *tracer, const PhotonOptions *options, Diag *dia
 {
     const Plan *plan = tracer_plan(tracer);
     *out = (PhotonMaps){0};
-    double sizes[MAP_COUNT] = {(double)plan->caustic_photons, (double)plan->global_photons};
-    double done = 0, total = sizes[0] + sizes[1];
+    double sizes[MAP_COUNT] = {(double)plan->caustic_photons, (double)plan->global_photons,
+                               (double)plan->caustic_photons, (double)plan->global_photons};
+    double done = 0, total = 0;
+    for (int kind = 0; kind < MAP_COUNT; kind++)
+        total += is_wanted(plan, (MapKind)kind) ? sizes[kind] : 0;
+    PhotonList photons = {0};
     Status status = OK;
     for (int kind = 0; kind < MAP_COUNT && status == OK; kind++) {
-        if (!plan_has(plan, map_feature[kind]))
+        if (!is_wanted(plan, (MapKind)kind))
             continue;
         double length = total > 0 ? sizes[kind] / total : 1;
         Progress progress = {options, done, length};
@@ -188,8 +280,9 @@ Status photon_pass(const Tracer *tracer, const PhotonOptions *options, Diag *dia
         part.progress = options->progress ? progress_part : NULL;
         part.progress_ctx = &progress;
         done += length;
-        status = make_map(tracer, (MapKind)kind, &part, diag, stats, out);
+        status = make_map(tracer, (MapKind)kind, &part, diag, stats, &photons, out);
     }
+    mem_free(photons.items);
     if (status != OK)
         photon_maps_done(out);
     else if (!options->has_radii)
@@ -202,6 +295,7 @@ void photon_maps_done(PhotonMaps *maps)
     photon_map_free(maps->caustic);
     photon_map_free(maps->global);
     irradiance_map_free(maps->irradiance);
+    photon_map_free(maps->volume);
     photon_books_done(&maps->books);
     *maps = (PhotonMaps){0};
 }
@@ -212,7 +306,7 @@ Status photon_plan_budgets(const Tracer *tracer, const PhotonOptions *options, D
     *out = (PhotonBooks){0};
     Status status = OK;
     for (int kind = 0; kind < MAP_COUNT && status == OK; kind++) {
-        if (!plan_has(tracer_plan(tracer), map_feature[kind]))
+        if (!is_wanted(tracer_plan(tracer), (MapKind)kind))
             continue;
         Emission emission;
         status = emission_init(&emission, tracer, (MapKind)kind, options, diag);
@@ -269,13 +363,16 @@ void photon_books_add(PhotonBooks *to, PhotonBooks *from, uint64_t before)
 {
     to->caustic_count = from->caustic_count;
     to->global_count = from->global_count;
+    to->volume_count = from->volume_count;
     add_map_books(&to->caustic, &from->caustic, from->caustic_count, before);
     add_map_books(&to->global, &from->global, from->global_count, before);
+    add_map_books(&to->volume, &from->volume, from->volume_count, before);
 }
 
 void photon_books_done(PhotonBooks *books)
 {
     mem_free(books->caustic);
     mem_free(books->global);
+    mem_free(books->volume);
     *books = (PhotonBooks){0};
 }

@@ -17,7 +17,8 @@
  * Which paths a map holds, and so what may be added up: caustic L S+ D, from a target on;
  * global L S* D (S* D)+, every hit after a first diffuse reflection; the first diffuse hit itself
  * is direct light, by shadow rays, or the caustic map's.  For final gathering the global map holds
- * that too, L (S* D)+.  Light of surfaces and sky, which no shadow ray brings, is always there. */
+ * that too, L (S* D)+.  Light of surfaces and sky, which no shadow ray brings, is always there.
+ * Volume: places in media, see MapKind in walk_int.h. */
 typedef struct LightBooks {
     char name[32]; /* of the light, of the object that glows, or "sky" */
     double power; /* flux onto the targets (caustic) or into the scene (global), summed RGB */
@@ -29,12 +30,14 @@ typedef struct LightBooks {
 
 typedef struct PhotonBooks {
     LightBooks *caustic, *global; /* NULL when that map is not made */
+    LightBooks *volume;           /* of all photons in media together */
     int caustic_count;            /* the lights of the scene */
     int global_count;             /* the lights, the objects that glow, the sky if it shines */
+    int volume_count;             /* as either, the larger that takes part */
 } PhotonBooks;
 
 typedef struct PhotonMaps {
-    PhotonMap *caustic, *global;          /* NULL: the plan does not call for it */
+    PhotonMap *caustic, *global, *volume; /* NULL: the plan does not call for it */
     IrradianceMap *irradiance;            /* for final gathering; NULL: not called for */
     double caustic_radius, global_radius; /* gather radii, scene units */
     double caustic_far, global_far;       /* how far a gather may widen that finds too little */

@@ -40,7 +40,7 @@ typedef struct Grid {
  * squared; the best density is as the root of the product). */
 static float importance(const Emission *emission, Rgb flux, V3 at)
 {
-    if (emission->rules.map == MAP_CAUSTIC)
+    if (map_is_aimed(emission->rules.map))
         return 1;
     double far = v3_dist(at, emission->rules.center) / fmax(emission->rules.radius, 1e-300);
     return rgb_sum(flux) / (float)fmax(1, far);

@@ -60,12 +60,12 @@ static Rgb flux_here(Walk *walk)
  * caustics; indirect light goes wherever light can. */
 static bool may_reflect(const Walk *walk, const Surface *surface)
 {
-    return walk->rules->map == MAP_GLOBAL || plan_photons_reflect(walk->beam->light, surface);
+    return !map_is_aimed(walk->rules->map) || plan_photons_reflect(walk->beam->light, surface);
 }
 
 static bool may_refract(const Walk *walk, const Surface *surface)
 {
-    return walk->rules->map == MAP_GLOBAL || plan_photons_refract(walk->beam->light, surface);
+    return !map_is_aimed(walk->rules->map) || plan_photons_refract(walk->beam->light, surface);
 }
 
 /* The probabilities of the three branches: that of going on at all is the largest channel of
@@ -132,7 +132,8 @@ static bool make_room(PhotonList *list)
 }
 
 /* Keep a photon; one of little power with the chance that makes up for more. */
-static bool store(Walk *walk, const SurfaceSample *s, Rgb power, float least, PhotonList *out)
+static bool store(Walk *walk, V3 p, V3 from, unsigned flags, Rgb power, float least,
+                  PhotonList *out)
 {
     float most = rgb_max(power);
     if (!(most > 0) || !rgb_is_finite(power))
@@ -144,12 +145,11 @@ static bool store(Walk *walk, const SurfaceSample *s, Rgb power, float least, Ph
     }
     if (!make_room(out))
         return false;
-    V3 at = v3_sub(s->at.p, walk->rules->center);
+    V3 at = v3_sub(p, walk->rules->center);
     Photon *photon = &out->items[out->count++];
-    *photon = (Photon){.pos = {(float)at.x, (float)at.y, (float)at.z},
-                       .flags = (uint16_t)(normal14_encode(s->ng) << 2)};
+    *photon = (Photon){.pos = {(float)at.x, (float)at.y, (float)at.z}, .flags = (uint16_t)flags};
     rgbe_encode(power, walk->rng, photon->rgbe);
-    direction_encode(s->wo, &photon->phi, &photon->theta);
+    direction_encode(from, &photon->phi, &photon->theta);
     return true;
 }
 
@@ -181,7 +181,7 @@ static bool is_kept(const Walk *walk, const Hit *hit, Rgb diffuse)
     if (walk->rules->map == MAP_GLOBAL)
         return (walk->is_diffuse || walk->rules->keeps_first || !walk->beam->light) &&
                walk->diffuse <= most_diffuse(walk);
-    return walk->is_specular && is_collecting(walk, hit);
+    return walk->rules->map == MAP_CAUSTIC && walk->is_specular && is_collecting(walk, hit);
 }
 
 /* --- the way ---------------------------------------------------------------------------- */
@@ -279,7 +279,7 @@ static bool follow(Walk *walk, const Hit *hit, const SurfaceSample *s, const Rou
         walk->is_specular = true;
         return true;
     case BRANCH_DIFFUSE:
-        if (walk->rules->map == MAP_CAUSTIC)
+        if (map_is_aimed(walk->rules->map))
             return false;
         walk->weight = rgb_mul(walk->weight, rgb_scale(r->diffuse, (float)(1 / r->p_diffuse)));
         walk->weight = rgb_scale(walk->weight, walk->rules->brightness);
@@ -303,29 +303,80 @@ static bool is_target(const Walk *walk, const Hit *hit)
            (isinf(beam->reach) || v3_dist(hit->point.p, beam->center) <= beam->reach);
 }
 
-/* Go to the next surface.  Returns false, with the end of the path, when there is none to go on
- * from. */
-static bool advance(Walk *walk, Hit *hit, SurfaceSample *s, PathEnd *end)
+static Rgb flux_at(Walk *walk, double length)
 {
-    RayKind kind = walk->rules->map == MAP_GLOBAL ? RAY_LIGHT : RAY_PHOTON;
-    if (!trace_closest(walk->thread, &walk->ray, kind, hit)) {
-        *end = PATH_ESCAPED;
+    return walk->is_diffuse ? walk->flux : beam_flux(walk->beam, walk->start, length);
+}
+
+/* Store a photon at the stop of a leg: its power is what passes there, times the length of way it
+ * stands for. */
+static void store_stop(Walk *walk, const MediaLeg *leg, PhotonList *out, WalkResult *result)
+{
+    unsigned flags = walk->rules->map == MAP_FOCUS ? PHOTON_FOCUSED : 0;
+    Rgb flux = rgb_mul(flux_at(walk, walk->length + leg->stop), walk->weight);
+    V3 p = ray_at(&walk->ray, leg->stop), from = v3_neg(walk->ray.d);
+    if (store(walk, p, from, flags, rgb_mul(flux, leg->power), 0, out) && result->stored++ == 0)
+        result->left = flux;
+}
+
+/* Cross the media up to the next surface; returns true when the photon was scattered on the way.
+ * out is NULL when nothing is to be stored. */
+static bool cross_media(Walk *walk, double length, PhotonList *out, WalkResult *result)
+{
+    MapKind map = walk->rules->map;
+    bool is_kept_there =
+        map == MAP_FOCUS ? walk->is_specular : walk->is_diffuse || !walk->beam->light;
+    bool may_stop = out && is_kept_there && (map == MAP_FOCUS || map == MAP_VOLUME);
+    MediaLeg leg;
+    if (!media_leg(walk->thread, walk->rules, &walk->ray, length, &walk->inside, may_stop,
+                   !map_is_aimed(map), walk->weight, walk->rng, &leg))
         return false;
+    if (leg.has_stop)
+        store_stop(walk, &leg, out, result);
+    walk->weight = rgb_mul(walk->weight, leg.weight);
+    if (!leg.is_scattered)
+        return false;
+    walk->length += leg.t;
+    flux_here(walk);
+    walk->is_diffuse = true;
+    walk->is_straight = false;
+    walk->is_aimed = true;
+    if (walk->level < walk->rules->max_level)
+        walk->level = 0;
+    walk->ray = (Ray){ray_at(&walk->ray, leg.t), leg.d, 0, INFINITY};
+    return true;
+}
+
+typedef enum Step { STEP_END, STEP_SURFACE, STEP_SCATTERED } Step;
+
+/* Go to the next surface, or to where a medium scatters the photon.  `end` is set to the end of the
+ * path when there is none to go on from. */
+static Step advance(Walk *walk, Hit *hit, SurfaceSample *s, PhotonList *out, WalkResult *result)
+{
+    RayKind kind = map_is_aimed(walk->rules->map) ? RAY_PHOTON : RAY_LIGHT;
+    bool is_hit = trace_closest(walk->thread, &walk->ray, kind, hit);
+    if (walk->rules->has_media && cross_media(walk, is_hit ? hit->t : INFINITY, out, result)) {
+        result->end = rgb_is_black(walk->weight) ? PATH_ABSORBED : PATH_CUT;
+        return STEP_SCATTERED;
+    }
+    if (!is_hit) {
+        result->end = PATH_ESCAPED;
+        return STEP_END;
     }
     walk->length += hit->t;
     const PhotonFlags *flags = &hit->surface->photons;
     if (!walk->is_aimed && !flags->is_pass_through) {
         walk->is_aimed = is_target(walk, hit);
         if (!walk->is_aimed) { /* something is in the way; if a target, it has its own beam */
-            *end = PATH_CUT;
-            return false;
+            result->end = PATH_CUT;
+            return STEP_END;
         }
     }
     if (!walk->is_straight)
         walk->level++;
     surface_sample(walk->thread, &walk->ray, hit, &walk->inside, s);
     walk->weight = rgb_mul(walk->weight, interiors_fade(&walk->inside, hit->t));
-    return true;
+    return STEP_SURFACE;
 }
 
 /* The limits of the language. */
@@ -337,7 +388,7 @@ static bool is_over_limit(const Walk *walk)
 
 static bool is_beyond_reach(const Walk *walk, const SurfaceSample *s)
 {
-    return walk->rules->map == MAP_GLOBAL && !walk->is_diffuse &&
+    return !map_is_aimed(walk->rules->map) && !walk->is_diffuse &&
            v3_dist(s->at.p, walk->rules->center) > walk->rules->reach;
 }
 
@@ -352,7 +403,8 @@ static bool meet_surface(Walk *walk, const Hit *hit, const SurfaceSample *s, flo
     }
     if (is_kept(walk, hit, diffuse)) {
         Rgb power = rgb_mul(flux_here(walk), walk->weight);
-        if (store(walk, s, power, least, out) && result->stored++ == 0)
+        unsigned normal = (unsigned)normal14_encode(s->ng) << 2;
+        if (store(walk, s->at.p, s->wo, normal, power, least, out) && result->stored++ == 0)
             result->left = power;
     }
     Roulette roulette;
@@ -382,9 +434,12 @@ void photon_walk(TraceThread *thread, const WalkRules *rules, const Beam *beam,
     for (int surfaces = 0; surfaces < PATH_SURFACES_MAX; surfaces++) {
         Hit hit;
         SurfaceSample s;
-        if (!advance(&walk, &hit, &s, &result->end))
+        Step step = advance(&walk, &hit, &s, out, result);
+        if (step == STEP_END || (step == STEP_SCATTERED && is_over_limit(&walk)))
             break;
-        if (s.surface->photons.is_pass_through && rules->map == MAP_CAUSTIC) {
+        if (step == STEP_SCATTERED)
+            continue;
+        if (s.surface->photons.is_pass_through && map_is_aimed(rules->map)) {
             pass_through(&walk, &s);
             if (is_over_limit(&walk))
                 break;
@@ -413,29 +468,34 @@ Rgb photon_scout(TraceThread *thread, const WalkRules *rules, const Beam *beam,
                  .rng = rng};
     begin(&walk);
     Rgb found = RGB_BLACK;
+    WalkResult none;
     for (int surfaces = 0; surfaces < PATH_SURFACES_MAX; surfaces++) {
         Hit hit;
         SurfaceSample s;
-        PathEnd end;
-        if (!advance(&walk, &hit, &s, &end))
+        Step step = advance(&walk, &hit, &s, NULL, &none);
+        if (step == STEP_SCATTERED) {
+            found = rgb_mul(flux_here(&walk), walk.weight);
+            *at = walk.ray.o;
+        }
+        if (step != STEP_SURFACE)
             break;
         Rgb diffuse = not_negative(surface_diffuse(&s));
         Roulette roulette;
-        if (rules->map == MAP_CAUSTIC && s.surface->photons.is_pass_through) {
+        if (map_is_aimed(rules->map) && s.surface->photons.is_pass_through) {
             pass_through(&walk, &s);
             if (is_over_limit(&walk))
                 break;
             continue;
         }
         set_roulette(&walk, &s, diffuse, &roulette);
-        bool is_there = rules->map == MAP_CAUSTIC
+        bool is_there = map_is_aimed(rules->map)
                             ? roulette.p_reflect + roulette.p_transmit > 0
                             : !rgb_is_black(diffuse) && !is_beyond_reach(&walk, &s);
         if (is_there) {
             found = rgb_mul(flux_here(&walk), walk.weight);
             *at = s.at.p;
         }
-        if (is_there || rules->map == MAP_CAUSTIC || !rgb_is_black(diffuse) ||
+        if (is_there || map_is_aimed(rules->map) || !rgb_is_black(diffuse) ||
             !follow(&walk, &hit, &s, &roulette, spin(&walk, &roulette)) || is_over_limit(&walk))
             break;
     }

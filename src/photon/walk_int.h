@@ -14,10 +14,21 @@
  *              diffuse reflection; for final gathering all hits, L (S* D)+.  From what glows, E,
  *              all hits always: E (S* D)+.
  *
- * Looked at by the eye, direct light (L D, by shadow rays that targets block), the caustic map and
- * the global map count each path once.  Gather rays take glow and the global map alone, so there
- * it holds everything. */
-typedef enum MapKind { MAP_CAUSTIC, MAP_GLOBAL, MAP_COUNT } MapKind;
+ * MAP_FOCUS    L S+ M: places in media on the way of light as MAP_CAUSTIC has it.
+ * MAP_VOLUME   L (S|D|M)* M with a diffuse reflection or a scattering before the last: light that
+ *              media scatter more than once.  From what glows every M: E (S|D|M)* M.  Both go into
+ *              one map, the volume map.
+ *
+ * Looked at by the eye, direct light (L D and L M, by shadow rays that targets block), the caustic
+ * map, the global and the volume map count each path once.  Gather rays take glow and the global map
+ * alone, so there it holds everything. */
+typedef enum MapKind { MAP_CAUSTIC, MAP_GLOBAL, MAP_FOCUS, MAP_VOLUME, MAP_COUNT } MapKind;
+
+/* Are photons for this map sent at targets, over mirrors and glass only? */
+static inline bool map_is_aimed(MapKind map)
+{
+    return map == MAP_CAUSTIC || map == MAP_FOCUS;
+}
 
 typedef enum PathEnd { PATH_STORED, PATH_ABSORBED, PATH_ESCAPED, PATH_CUT, PATH_END_COUNT } PathEnd;
 
@@ -41,6 +52,7 @@ typedef struct WalkRules {
     int max_diffuse;    /* diffuse reflections before the last hit that is kept (global) */
     float brightness;   /* factor of every diffuse reflection (global) */
     const Interiors *inside; /* per light: the interiors it is in; what glows is asked for */
+    bool has_media;
 } WalkRules;
 
 /* What became of a photon. */
@@ -50,6 +62,26 @@ typedef struct WalkResult {
     Rgb emitted; /* flux it started with, as measured where it ended */
     Rgb left;    /* flux it had there (when first stored, for PATH_STORED) */
 } WalkResult;
+
+/* What media do to a photon between two surfaces. */
+typedef struct MediaLeg {
+    bool has_stop; /* the photon is to be stored, */
+    double stop;   /* at this t, */
+    Rgb power;     /* with this share of its own, scene units: see media_place */
+    bool is_scattered; /* at t, into direction d; else it gets to the end */
+    double t;
+    V3 d;
+    Rgb weight; /* share of the light that goes on */
+} MediaLeg;
+
+/* Find what media do on a leg.  Returns false when there are none.
+ *
+ * length    to the next surface; infinite: there is none.
+ * may_stop, may_scatter  what the map is for.
+ * weight    of the photon: the channels that count. */
+bool media_leg(TraceThread *thread, const WalkRules *rules, const Ray *ray, double length,
+               const Interiors *inside, bool may_stop, bool may_scatter, Rgb weight, Rng *rng,
+               MediaLeg *out);
 
 /* Follow a photon, adding what is stored to `out`.
  *

@@ -509,6 +509,8 @@ Status plan_make(const Scene *scene, const PlanOptions *options, Arena *arena, P
     plan_camera_and_sky(scene, out->rows);
     plan_media(scene, options->quality, out->rows);
 
+    plan_volume(scene, out);
+
     out->is_unlit = options->quality < QUALITY_LIGHTS;
     out->light_radius = options->light_radius;
     if (plan_has(out, FEATURE_CAUSTIC_MAP))

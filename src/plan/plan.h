@@ -47,6 +47,8 @@ typedef struct Plan {
     int unmet_lights;           /* lights whose caustics paths would bring, had they a size */
     long caustic_photons;       /* the count of photons{}, expected to be stored; 0: by spacing */
     long global_photons;        /* to emit into the scene, all lights */
+    bool has_volume_focus;      /* the volume map holds what targets focus into media */
+    bool has_volume_indirect;   /* and what media scatter more than once */
 } Plan;
 
 /* Make the plan.  Memory comes from `arena`.  ERR_MEMORY or OK. */

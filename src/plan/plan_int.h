@@ -7,4 +7,7 @@
 /* Set the rows of media, fog and rainbows. */
 void plan_media(const Scene *scene, int quality, PlanRow *rows);
 
+/* Set the row of the volume map and what it holds, when all other rows are set. */
+void plan_volume(const Scene *scene, Plan *plan);
+
 #endif

@@ -79,3 +79,45 @@ void plan_media(const Scene *scene, int quality, PlanRow *rows)
                  QUALITY_MEDIA);
     }
 }
+
+/* --- photons in media --------------------------------------------------------------------- */
+
+static bool collects(const Medium *const *media, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (media[i]->is_collecting && !rgb_is_black(media[i]->scattering))
+            return true;
+    return false;
+}
+
+/* Is there a medium that scatters and in which photons are kept? */
+static bool has_collecting(const Scene *scene)
+{
+    bool found = collects(scene->atmosphere.media, scene->atmosphere.media_count);
+    for (uint32_t i = 0; i < scene->surface_count && !found; i++) {
+        const Interior *interior = scene->surfaces[i].interior;
+        found = interior->is_hollow && collects(interior->media, interior->media_count);
+    }
+    return found;
+}
+
+void plan_volume(const Scene *scene, Plan *plan)
+{
+    PlanRow *row = &plan->rows[FEATURE_VOLUME_MAP];
+    const PhotonSettings *photons = &scene->settings.photons;
+    if (!plan_has(plan, FEATURE_MEDIA) || !has_collecting(scene)) {
+        set_row(row, false, SPAN_NONE, "no media scatter light and collect photons");
+        return;
+    }
+    plan->has_volume_focus = plan_has(plan, FEATURE_CAUSTIC_MAP) && photons->media_steps > 0;
+    plan->has_volume_indirect = plan_has(plan, FEATURE_GLOBAL_MAP);
+    if (plan->has_volume_focus)
+        set_row(row, true, photons->span,
+                plan->has_volume_indirect ? "media in photons{}, and indirect light"
+                                          : "media in photons{}: light that targets focus");
+    else if (plan->has_volume_indirect)
+        set_row(row, true, plan->rows[FEATURE_GLOBAL_MAP].why,
+                "indirect light: what media scatter more than once");
+    else
+        set_row(row, false, SPAN_NONE, "no media steps in photons{}, and no indirect light");
+}

@@ -24,8 +24,7 @@ typedef struct Header {
     uint64_t settings_size; /* bytes */
     uint64_t value_count;
     uint64_t passes;
-    double caustic_radius, global_radius; /* of the first pass */
-    uint64_t unused;
+    double caustic_radius, global_radius, volume_radius; /* of the first pass */
 } Header;
 
 static_assert(sizeof(Header) == 64, "the header has no holes");
@@ -147,7 +146,8 @@ static void put_state(Stream *out, const char *settings, const PassRadii *first,
                      .value_count = sum->count,
                      .passes = sum->passes,
                      .caustic_radius = first->caustic,
-                     .global_radius = first->global};
+                     .global_radius = first->global,
+                     .volume_radius = first->volume};
     memcpy(header.magic, MAGIC, sizeof MAGIC);
     put(out, &header, sizeof header);
     put(out, settings, header.settings_size);
@@ -288,7 +288,7 @@ Status checkpoint_read(Diag *diag, const char *path, const char *settings, PassR
     fclose(r.in.file);
     if (status != OK)
         return status;
-    *first = (PassRadii){r.header.caustic_radius, r.header.global_radius};
+    *first = (PassRadii){r.header.caustic_radius, r.header.global_radius, r.header.volume_radius};
     sum->passes = r.header.passes;
     return OK;
 }

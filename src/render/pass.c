@@ -12,6 +12,9 @@
  * density (photon_map_radius).  Fewer than in a single pass: their noise is averaged away. */
 enum { SERIES_PHOTONS = 12 };
 
+/* Photons in the ball around one in a medium, across which its light is spread. */
+enum { VOLUME_PHOTONS = 30 };
+
 typedef struct Pass {
     const Tracer *tracer;
     const PassOptions *options;
@@ -19,6 +22,7 @@ typedef struct Pass {
     Stats *stats;
     PhotonMaps maps;
     PhotonReach caustic_reach;
+    VolumeIndex *volume;
     GatherLimits caustic_limits, global_limits;
     IrradianceCache *cache;
 } Pass;
@@ -43,7 +47,8 @@ PhotonOptions pass_photon_options(const RenderOptions *options, uint64_t seed)
 
 bool pass_needs_photons(const Plan *plan)
 {
-    return plan_has(plan, FEATURE_CAUSTIC_MAP) || plan_has(plan, FEATURE_GLOBAL_MAP);
+    return plan_has(plan, FEATURE_CAUSTIC_MAP) || plan_has(plan, FEATURE_GLOBAL_MAP) ||
+           plan_has(plan, FEATURE_VOLUME_MAP);
 }
 
 static GatherLimits gather_limits(const Pass *pass, double radius, double far_radius)
@@ -87,6 +92,24 @@ static void set_limits(Pass *pass)
     }
 }
 
+/* Make photons in media be found by rays.  In one pass of many all balls are alike; as they shrink
+ * in three dimensions, and those of surfaces in two, they shrink less. */
+static Status make_volume(Pass *pass)
+{
+    const PhotonMap *map = pass->maps.volume;
+    const PassSeries *series = pass->options->series;
+    int threads = pass->options->render->threads;
+    double radius = tracer_scene(pass->tracer)->settings.photons.media_radius;
+    if (!map)
+        return OK;
+    if (series) {
+        if (series->first->volume == 0)
+            series->first->volume = radius > 0 ? radius : volume_radius(map, VOLUME_PHOTONS);
+        radius = series->first->volume * pow(series->shrink, 2.0 / 3);
+    }
+    return volume_index_new(map, VOLUME_PHOTONS, radius, threads, pass->diag, &pass->volume);
+}
+
 static Status make_maps(Pass *pass)
 {
     if (!pass_needs_photons(tracer_plan(pass->tracer)))
@@ -97,6 +120,7 @@ static Status make_maps(Pass *pass)
     options.is_repeat = series && series->is_repeat;
     TRY(photon_pass(pass->tracer, &options, pass->diag, pass->stats, &pass->maps));
     set_limits(pass);
+    TRY(make_volume(pass));
     if (!pass->maps.caustic)
         return OK;
     const GatherLimits *limits = &pass->caustic_limits;
@@ -144,6 +168,7 @@ static Status fill_film(Pass *pass, Film *film)
                       .caustic = pass->maps.caustic,
                       .global = pass->maps.global,
                       .irradiance = pass->maps.irradiance,
+                      .volume = pass->volume,
                       .caustic_reach = &pass->caustic_reach,
                       .caustic_limits = pass->caustic_limits,
                       .global_limits = pass->global_limits};
@@ -170,10 +195,12 @@ Status pass_render(const Tracer *tracer, const PassOptions *options, Diag *diag,
     if (status == OK) {
         out->caustic_hash = map_hash(pass.maps.caustic);
         out->global_hash = map_hash(pass.maps.global);
+        out->volume_hash = map_hash(pass.maps.volume);
         out->books = pass.maps.books;
         pass.maps.books = (PhotonBooks){0};
     }
     irradiance_cache_free(pass.cache);
+    volume_index_free(pass.volume);
     photon_reach_done(&pass.caustic_reach);
     photon_maps_done(&pass.maps);
     return status;

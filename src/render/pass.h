@@ -24,7 +24,7 @@ typedef struct PassOptions {
 /* What a pass leaves beside the picture.  Free with pass_result_done. */
 typedef struct PassResult {
     PhotonBooks books;
-    uint64_t caustic_hash, global_hash; /* of the photon maps' bytes, 0: no map */
+    uint64_t caustic_hash, global_hash, volume_hash; /* of the photon maps' bytes, 0: no map */
 } PassResult;
 
 /* Run a pass into `film`, which is there.  Counters are added to *stats.  After a failure the

@@ -64,7 +64,8 @@ double progressive_shrink(uint64_t pass)
 
 static PassRadii scaled(PassRadii radii, double factor)
 {
-    return (PassRadii){radii.caustic * factor, radii.global * factor};
+    return (PassRadii){radii.caustic * factor, radii.global * factor,
+                       radii.volume * pow(factor, 2.0 / 3)};
 }
 
 /* --- progress ------------------------------------------------------------------------------- */
@@ -185,6 +186,7 @@ static Status run_pass(Series *s)
     photon_books_add(&s->out->books, &result.books, s->out->new_passes);
     s->out->caustic_hash = result.caustic_hash;
     s->out->global_hash = result.global_hash;
+    s->out->volume_hash = result.volume_hash;
     s->out->last_radii = scaled(s->first, series.shrink);
     s->out->new_passes++;
     s->out->stats.count[STAT_PIXELS] = (uint64_t)s->film.width * (uint64_t)s->film.height;

@@ -27,6 +27,7 @@ static void take_result(Film *film, PassResult *pass, RenderResult *out)
     out->image = film->image;
     out->caustic_hash = pass->caustic_hash;
     out->global_hash = pass->global_hash;
+    out->volume_hash = pass->volume_hash;
     out->books = pass->books;
     film->image = (Image){0};
     pass->books = (PhotonBooks){0};

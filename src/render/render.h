@@ -25,7 +25,7 @@ typedef struct RenderProgress {
 
 /* Gather radii, scene units; 0: there was no map. */
 typedef struct PassRadii {
-    double caustic, global;
+    double caustic, global, volume;
 } PassRadii;
 
 typedef struct RenderResult RenderResult;
@@ -72,7 +72,7 @@ struct RenderResult {
     Stats stats;
     PhotonBooks books;
     Plan plan;        /* its memory is the scene's arena */
-    uint64_t caustic_hash, global_hash; /* of the photon maps' bytes (of the last pass),
+    uint64_t caustic_hash, global_hash, volume_hash; /* of the photon maps' bytes (of the last pass),
                                            0: no map */
 };
 

@@ -87,6 +87,28 @@ Rgb media_glow_length(Rgb x, double length);
 Rgb media_transmittance(const MediaHere *here, const Ray *ray, double begin, double end,
                         double near, Rng *rng);
 
+/* Draw a place along a profile, where it scatters, in proportion to the light that gets there.
+ *
+ * u       in [0,1).
+ * weight  what passes up to there, over the density of the places: its mean over many places is
+ *         the integral of what passes, over all that scatters.
+ *
+ * Returns false when nothing scatters. */
+bool media_place(const MediaProfile *profile, double u, double *t, Rgb *weight);
+
+/* Draw where light collides with the media.
+ *
+ * light   what the light is made of: the channels that count.
+ * weight  what passes up to t over the chance of it; without a collision: up to the end.
+ *
+ * Returns true for a collision: *cell is where, and the light left there has lost nothing yet. */
+bool media_collide(const MediaProfile *profile, Rgb light, Rng *rng, double *t, Rgb *weight,
+                   const MediaCell **cell);
+
+/* Draw one of the media at p by what it scatters of `light` after a collision; *weight is what it
+ * keeps of it over the chance.  NULL: none scatters. */
+const Medium *media_choose(const MediaHere *here, V3 p, Rgb light, Rng *rng, Rgb *weight);
+
 /* Return what passes the media of objects on a shadow ray.
  *
  * is_to_light  the light dims in media: also those that it is in, or that have no end before

@@ -17,7 +17,7 @@
 #include "quiet.h"
 
 static const char SETTINGS[] = "pms 1.2.3\nscene_text #0123456789abcdef\nseed 7\nlayers none\n";
-static const PassRadii RADII = {0.25, 1e-9};
+static const PassRadii RADII = {0.25, 1e-9, 3};
 
 static Film make_film(unsigned layers)
 {

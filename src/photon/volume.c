@@ -1,0 +1,260 @@
+/* Photons in media, found by rays: boxes around the balls of the photons, over the map's own tree.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "photon/volume.h"
+
+#include "base/mem.h"
+#include "base/work.h"
+#include "photon/gather.h"
+#include "photon/photon_map_int.h"
+
+#include <string.h>
+
+enum { STACK_MAX = 80, CHUNK_BLOCKS = 64 };
+
+/* Rounding of where a ray enters and leaves a box. */
+#define BOX_SLACK 0x1p-20f
+
+typedef struct VolumeBox {
+    float lo[3], hi[3]; /* relative to the map's centre */
+} VolumeBox;
+
+struct VolumeIndex {
+    const PhotonMap *map;
+    VolumeBox *boxes; /* of every node: balls included */
+    float *radius;    /* of a block's balls */
+};
+
+/* --- making ------------------------------------------------------------------------------- */
+
+typedef struct IndexWork {
+    VolumeIndex *index;
+    GatherScratch **scratch; /* per thread */
+    int nearest;
+    float radius; /* 0: from the density */
+} IndexWork;
+
+static V3 block_center(const PhotonBlock *block)
+{
+    double sum[3] = {0};
+    int count = 0;
+    for (int i = 0; i < BLOCK_PHOTONS; i++) {
+        if (isnan(block->pos[0][i]))
+            continue;
+        for (int axis = 0; axis < 3; axis++)
+            sum[axis] += (double)block->pos[axis][i];
+        count++;
+    }
+    double scale = count > 0 ? 1.0 / count : 0;
+    return v3(sum[0] * scale, sum[1] * scale, sum[2] * scale);
+}
+
+static float radius_around(const PhotonMap *map, V3 p, int nearest, GatherScratch *scratch)
+{
+    size_t count = photon_map_count(map);
+    GatherLimits limits = {.max_photons = (size_t)nearest < count ? nearest : (int)count,
+                           .max_radius = INFINITY,
+                           .shape = GATHER_SPHERE,
+                           .normal_cosine = -1};
+    const uint32_t *found;
+    double radius2;
+    photon_nearest(map, p, v3(0, 0, 1), &limits, scratch, &found, &radius2);
+    return radius2 > 0 && isfinite(radius2) ? (float)sqrt(radius2) : 0;
+}
+
+static void find_radii(void *ctx, size_t chunk, int thread)
+{
+    IndexWork *work = ctx;
+    const PhotonMap *map = work->index->map;
+    uint32_t first = (uint32_t)chunk * CHUNK_BLOCKS, end = first + CHUNK_BLOCKS;
+    for (uint32_t i = first; i < end && i < map->block_count; i++) {
+        V3 p = v3_add(map->center, block_center(&map->blocks[i]));
+        work->index->radius[i] = work->radius > 0
+                                     ? work->radius
+                                     : radius_around(map, p, work->nearest, work->scratch[thread]);
+    }
+}
+
+static VolumeBox block_box(const PhotonBlock *block, float radius)
+{
+    VolumeBox box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (int i = 0; i < BLOCK_PHOTONS; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            float x = block->pos[axis][i];
+            box.lo[axis] = x - radius < box.lo[axis] ? x - radius : box.lo[axis];
+            box.hi[axis] = x + radius > box.hi[axis] ? x + radius : box.hi[axis];
+        }
+    return box;
+}
+
+static void fill_boxes(VolumeIndex *index)
+{
+    const PhotonMap *map = index->map;
+    uint32_t inner = map->block_count - 1;
+    for (uint32_t node = inner + map->block_count; node-- > 0;) {
+        if (node >= inner) {
+            uint32_t block = block_of_node(map, node);
+            index->boxes[node] = block_box(&map->blocks[block], index->radius[block]);
+            continue;
+        }
+        const VolumeBox *a = &index->boxes[2 * node + 1], *b = &index->boxes[2 * node + 2];
+        for (int axis = 0; axis < 3; axis++) {
+            index->boxes[node].lo[axis] = fminf(a->lo[axis], b->lo[axis]);
+            index->boxes[node].hi[axis] = fmaxf(a->hi[axis], b->hi[axis]);
+        }
+    }
+}
+
+static bool make_scratch(IndexWork *work, int threads)
+{
+    work->scratch = mem_array((size_t)threads, sizeof *work->scratch);
+    for (int i = 0; work->scratch && i < threads; i++)
+        if (!(work->scratch[i] = gather_scratch_new()))
+            return false;
+    return work->scratch != NULL;
+}
+
+Status volume_index_new(const PhotonMap *map, int nearest, double radius, int threads, Diag *diag,
+                        VolumeIndex **out)
+{
+    *out = NULL;
+    uint32_t blocks = map->block_count;
+    VolumeIndex *index = mem_alloc(sizeof *index);
+    IndexWork work = {.index = index, .nearest = nearest, .radius = (float)radius};
+    if (!index)
+        return diag_no_memory(diag, "photons in media");
+    index->map = map;
+    index->boxes = mem_array((size_t)blocks * 2, sizeof *index->boxes);
+    index->radius = mem_array((size_t)blocks + 1, sizeof *index->radius);
+    Status status = index->boxes && index->radius && make_scratch(&work, threads)
+                        ? OK
+                        : diag_no_memory(diag, "photons in media");
+    if (status == OK)
+        status = work_for(threads, (blocks + CHUNK_BLOCKS - 1) / CHUNK_BLOCKS, find_radii, &work);
+    if (status == OK)
+        fill_boxes(index);
+    for (int i = 0; work.scratch && i < threads; i++)
+        gather_scratch_free(work.scratch[i]);
+    mem_free(work.scratch);
+    if (status == OK)
+        *out = index;
+    else
+        volume_index_free(index);
+    return status;
+}
+
+void volume_index_free(VolumeIndex *index)
+{
+    if (!index)
+        return;
+    mem_free(index->boxes);
+    mem_free(index->radius);
+    mem_free(index);
+}
+
+double volume_radius(const PhotonMap *map, int nearest)
+{
+    return photon_map_radius(map, nearest);
+}
+
+/* --- asking ------------------------------------------------------------------------------- */
+
+typedef struct VolumeQuery {
+    const VolumeIndex *index;
+    const Ray *ray;
+    double shift;     /* t where the query's own origin is */
+    float o[3], d[3]; /* the ray, relative to the map's centre, from its point nearest to it */
+    float over[3];    /* 1/d */
+    float begin, end; /* t from there */
+    void (*visit)(void *ctx, const VolumePhoton *photon);
+    void *ctx;
+} VolumeQuery;
+
+static VolumeQuery make_query(const VolumeIndex *index, const Ray *ray, double length)
+{
+    V3 to = v3_sub(index->map->center, ray->o);
+    VolumeQuery query = {.index = index, .ray = ray, .shift = v3_dot(to, ray->d)};
+    V3 o = v3_sub(v3_scale(ray->d, query.shift), to);
+    const double from[3] = {o.x, o.y, o.z}, d[3] = {ray->d.x, ray->d.y, ray->d.z};
+    for (int axis = 0; axis < 3; axis++) {
+        query.o[axis] = (float)from[axis];
+        query.d[axis] = (float)d[axis];
+        query.over[axis] = (float)(1 / d[axis]);
+    }
+    query.begin = (float)-query.shift;
+    query.end = (float)(length - query.shift);
+    return query;
+}
+
+static bool is_cut(const VolumeQuery *query, const VolumeBox *box)
+{
+    float near = query->begin, far = query->end;
+    for (int axis = 0; axis < 3; axis++) {
+        float a = (box->lo[axis] - query->o[axis]) * query->over[axis];
+        float b = (box->hi[axis] - query->o[axis]) * query->over[axis];
+        float low = a < b ? a : b, high = a < b ? b : a;
+        near = low > near ? low : near;
+        far = high < far ? high : far;
+    }
+    return near - far <= BOX_SLACK * (fabsf(near) + fabsf(far));
+}
+
+static void visit_photon(const VolumeQuery *query, const PhotonBlock *block, int i, double t,
+                         float kernel)
+{
+    uint32_t rgbe = block->rgbe[i];
+    const uint8_t bytes[4] = {(uint8_t)rgbe, (uint8_t)(rgbe >> 8), (uint8_t)(rgbe >> 16),
+                              (uint8_t)(rgbe >> 24)};
+    uint16_t from = block->from[i];
+    VolumePhoton photon = {.t = t,
+                           .from = direction_decode((uint8_t)from, (uint8_t)(from >> 8)),
+                           .power = rgb_scale(rgbe_decode(bytes), kernel),
+                           .is_focused = block->flags[i] == PHOTON_FOCUSED};
+    query->visit(query->ctx, &photon);
+}
+
+/* Epanechnikov's kernel over the disk: light keeps its sum and has no hard edge. */
+static void visit_block(const VolumeQuery *query, uint32_t number)
+{
+    const PhotonBlock *block = &query->index->map->blocks[number];
+    float radius2 = query->index->radius[number] * query->index->radius[number];
+    float along[BLOCK_PHOTONS], away2[BLOCK_PHOTONS];
+    for (int i = 0; i < BLOCK_PHOTONS; i++) {
+        float x = block->pos[0][i] - query->o[0], y = block->pos[1][i] - query->o[1];
+        float z = block->pos[2][i] - query->o[2];
+        along[i] = x * query->d[0] + y * query->d[1] + z * query->d[2];
+        float ax = x - along[i] * query->d[0], ay = y - along[i] * query->d[1];
+        float az = z - along[i] * query->d[2];
+        away2[i] = ax * ax + ay * ay + az * az;
+    }
+    for (int i = 0; i < BLOCK_PHOTONS; i++) {
+        if (!(away2[i] < radius2 && along[i] > query->begin && along[i] < query->end))
+            continue;
+        float kernel = 2 * (1 - away2[i] / radius2) / ((float)PMS_PI * radius2);
+        visit_photon(query, block, i, (double)along[i] + query->shift, kernel);
+    }
+}
+
+void volume_along(const VolumeIndex *index, const Ray *ray, double length,
+                  void (*visit)(void *ctx, const VolumePhoton *photon), void *ctx)
+{
+    VolumeQuery query = make_query(index, ray, length);
+    query.visit = visit;
+    query.ctx = ctx;
+    const PhotonMap *map = index->map;
+    uint32_t inner = map->block_count - 1, stack[STACK_MAX];
+    int depth = 0;
+    if (map->block_count == 0)
+        return;
+    stack[depth++] = 0;
+    while (depth > 0) {
+        uint32_t node = stack[--depth];
+        if (!is_cut(&query, &index->boxes[node]))
+            continue;
+        if (node >= inner) {
+            visit_block(&query, block_of_node(map, node));
+        } else {
+            stack[depth++] = 2 * node + 2;
+            stack[depth++] = 2 * node + 1;
+        }
+    }
+}

@@ -1,0 +1,336 @@
+/* Photons in media: what targets focus, what media scatter more than once, and that no light is
+ * lost or counted twice.
+ *
+ * Expected values are closed forms, shadow rays, or a walk through a slab written here that shares
+ * nothing with the photons.  SPDX-License-Identifier: Apache-2.0 */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "lit_scene.h"
+
+#include "eye/eye.h"
+#include "texture/media.h"
+
+enum { NEAREST = 30 };
+
+/* The mean over the film, by part (green). */
+typedef struct View {
+    double part[PART_COUNT], sum, error;
+} View;
+
+static View view(LitScene *lit, int samples)
+{
+    EyeThread *eye;
+    VolumeIndex *volume = NULL;
+    if (lit->maps.volume)
+        assert_int_equal(volume_index_new(lit->maps.volume, NEAREST, 0, 2, &lit->diag, &volume),
+                         OK);
+    EyeOptions options = {.width = 1, .height = 1, .seed = 3, .volume = volume};
+    assert_int_equal(eye_thread_new(lit->tracer, &options, &lit->diag, &eye), OK);
+    View out = {.sum = 0};
+    double squares = 0;
+    for (int i = 0; i < samples; i++) {
+        EyeSample s;
+        Rng rng = rng_at(11, 0, (uint64_t)i);
+        double x = rng_double(&rng), y = rng_double(&rng), sum = 0;
+        assert_true(eye_sample(eye, x, y, 0, (uint32_t)i, &s));
+        for (int k = 0; k < PART_COUNT; k++) {
+            out.part[k] += (double)s.part[k].g / samples;
+            sum += (double)s.part[k].g;
+        }
+        out.sum += sum / samples;
+        squares += sum * sum / samples;
+    }
+    out.error = sqrt(fmax(0, squares - out.sum * out.sum) / samples);
+    eye_thread_free(eye, NULL);
+    volume_index_free(volume);
+    return out;
+}
+
+#define HEAD "#version 3.7;\nglobal_settings { assumed_gamma 1 max_trace_level 200\n"
+#define EYE "camera { orthographic location <0,0,-10> direction z right x*1 up y*1 }\n"
+
+/* --- focused light -------------------------------------------------------------------------- */
+
+/* Row S11: the volume map is made when media scatter, and photons are asked for in them. */
+static void volume_map_only_when_called_for(void **state)
+{
+    (void)state;
+    const struct {
+        const char *settings, *media;
+        bool is_made;
+    } cases[] = {
+        {"photons { count 2000 media 1 }", "media { scattering { 1, 0.1 } }", true},
+        {"photons { count 2000 media 0 }", "media { scattering { 1, 0.1 } }", false},
+        {"photons { count 2000 media 1 }", "media { absorption 0.1 }", false},
+        {"photons { count 2000 media 1 }", "media { scattering { 1, 0.1 } collect off }", false},
+        {"photons { count 2000 media 1 }", "", false},
+        {"pms { gi on global_photons 2000 }", "media { scattering { 1, 0.1 } }", true},
+        {"pms { gi on global_photons 2000 }", "media { emission 0.1 }", false},
+        {"", "media { scattering { 1, 0.1 } }", false},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 HEAD "%s }\nlight_source { <0,4,0> 1 }\n%s\n"
+                      "box { <-9,-3,-11>, <9,6,4> hollow pigment { rgb 0.5 } }\n"
+                      "sphere { <0,2,0>, 1 pigment { rgbt 1 } interior { ior 1.5 }\n"
+                      "  photons { target refraction on } }\n",
+                 cases[i].settings, cases[i].media);
+        LitScene lit;
+        lit_make(&lit, text, 1, 1);
+        if ((lit.maps.volume != NULL) != cases[i].is_made)
+            fail_msg("%s, %s: %d", cases[i].settings, cases[i].media, lit.maps.volume != NULL);
+        assert_true((lit.maps.books.volume != NULL) == cases[i].is_made);
+        lit_done(&lit);
+    }
+}
+
+/* A pane that does not bend light casts no shadow in smoke, whether the light behind it comes by
+ * shadow rays or, as it is a target, by photons. */
+static void a_pane_of_ior_1_changes_nothing(void **state)
+{
+    (void)state;
+    const char *const lights[] = {
+        "light_source { <0,4,0> 1 media_attenuation on }",
+        "light_source { <0,4,0> 3 fade_distance 2 fade_power 2 media_attenuation on }",
+        "light_source { <1,4,0> 1 spotlight point_at 0 radius 20 falloff 30\n  media_attenuation "
+        "on }",
+        "light_source { <0,4,0> 1 parallel point_at 0 media_attenuation on }",
+    };
+    const char *const media[] = {
+        "media { scattering { 1, 0.1 } }",
+        "media { scattering { 5, 0.2 eccentricity 0.5 } absorption 0.1 }",
+        "media { scattering { 2, 0.2 extinction 0 } }",
+        "media { scattering { 1, 0.3 } density { gradient y scale 3 } }",
+    };
+    for (int i = 0; i < 4; i++) {
+        double sum[2];
+        for (int is_target = 0; is_target < 2; is_target++) {
+            char text[2048];
+            snprintf(text, sizeof text,
+                     HEAD "photons { count 100000 media 10 } }\n" EYE "%s\n%s\n"
+                          "box { <-9,-3,-11>, <9,6,4> hollow pigment { rgb 0 }\n"
+                          "  finish { ambient 0 diffuse 0 } }\n"
+                          "box { <-2,2,-2>, <2,2.01,2> hollow pigment { rgbt 1 }\n"
+                          "  finish { ambient 0 diffuse 0 } interior { ior 1 } photons { %s } }\n",
+                     lights[i], media[i],
+                     is_target ? "target refraction on collect off" : "refraction off");
+            LitScene lit;
+            lit_make(&lit, text, 2, 3);
+            assert_true((lit.maps.volume != NULL) == (is_target != 0));
+            View got = view(&lit, 400);
+            sum[is_target] = got.sum;
+            if (is_target)
+                assert_true(got.part[PART_CAUSTIC] > 0.1 * got.sum);
+            assert_true(got.part[PART_INDIRECT] == 0);
+            lit_done(&lit);
+        }
+        print_message("# light %d: %.5f with photons, %.5f without\n", i, sum[1], sum[0]);
+        assert_true(fabs(sum[1] / sum[0] - 1) < 0.02);
+    }
+}
+
+/* --- what is scattered more than once ------------------------------------------------------- */
+
+/* A slab lit along its normal, seen along it, scattering evenly: the light scattered more than once
+ * that comes back, by walks that send to the eye at every turn but the first. */
+static double slab_walk(double depth, double albedo, int walks, double *error)
+{
+    double sum = 0, squares = 0;
+    for (int i = 0; i < walks; i++) {
+        Rng rng = rng_at(23, 0, (uint64_t)i);
+        double z = 0, mu = 1, weight = 1, got = 0;
+        for (int turn = 0; turn < 1000; turn++) {
+            z += -log1p(-rng_double(&rng)) * mu;
+            if (!(z > 0 && z < depth))
+                break;
+            weight *= albedo;
+            if (turn > 0)
+                got += weight * exp(-z);
+            mu = 2 * rng_double(&rng) - 1;
+        }
+        sum += got / walks;
+        squares += got * got / walks;
+    }
+    *error = sqrt((squares - sum * sum) / walks);
+    return sum;
+}
+
+/* In units of light without pi, scattering 1/4 with extinction 4 is physical: what comes back of
+ * irradiance 1 is (1/4) of what the walk sends per unit of depth. */
+static void multiple_scattering_in_a_slab(void **state)
+{
+    (void)state;
+    const double depths[] = {0.5, 2}, albedos[] = {1, 0.7};
+    for (int i = 0; i < 4; i++) {
+        double depth = depths[i / 2], albedo = albedos[i % 2], walk_error;
+        char text[2048];
+        snprintf(text, sizeof text,
+                 HEAD
+                 "photons { count 1 } pms { gi on gi_method map global_photons 100000 } }\n" EYE
+                 "light_source { <0,0,-50> 1 parallel point_at 0 }\n"
+                 "box { <-10,-10,0>, <10,10,%g> hollow pigment { rgbt 1 }\n"
+                 "  finish { ambient 0 diffuse 0 } interior {\n"
+                 "  media { scattering { 1, %g extinction 4 } absorption %g } } }\n"
+                 "box { <50,50,50>, <51,51,51> pigment { rgb 1 } }\n",
+                 depth, albedo / 4, 1 - albedo);
+        LitScene lit;
+        lit_make(&lit, text, 2, 3);
+        assert_non_null(lit.maps.volume);
+        View got = view(&lit, 400);
+        double expected = slab_walk(depth, albedo, 400000, &walk_error) / 4;
+        double single = albedo / 4 * (1 - exp(-2 * depth)) / 2;
+        /* A unit square of the slab has so many photons that are seen. */
+        double seen = (double)photon_map_count(lit.maps.volume) / 400;
+        double error = expected * 2 / sqrt(seen) + walk_error / 4;
+        print_message(
+            "# depth %g albedo %g: %.4f, expected %.4f +- %.4f; once %.4f, expected %.4f\n", depth,
+            albedo, got.part[PART_INDIRECT], expected, error, got.part[PART_DIRECT], single);
+        assert_true(fabs(got.part[PART_INDIRECT] - expected) < 4 * error);
+        assert_true(fabs(got.part[PART_DIRECT] / single - 1) < 0.005);
+        lit_done(&lit);
+    }
+}
+
+/* A lamp in the middle of a closed sphere of smoke that loses no light, with a wall that keeps the
+ * part 1 - rho: what falls on the wall in all is flux / (area (1 - rho)), however thick the smoke.
+ */
+static void no_light_is_lost_in_smoke(void **state)
+{
+    (void)state;
+    const double rho = 0.5, far = 2e-4, flux = 4 * PMS_PI * 2 * far * far;
+    const double thick[] = {1e-6, 0.5, 3};
+    for (int i = 0; i < 3; i++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 HEAD "pms { gi on gi_method map global_photons 100000 } }\n"
+                      "light_source { 0 1 fade_distance %g fade_power 2 media_attenuation on }\n"
+                      "media { scattering { 5, %g eccentricity 0.5 extinction 4 } }\n"
+                      "sphere { 0, 1 hollow pigment { rgb 1 } finish { ambient 0 diffuse %g } }\n",
+                 far, thick[i] / 4, rho);
+        LitScene lit;
+        lit_make(&lit, text, 2, 3);
+        const PhotonMap *map = lit.maps.global;
+        double stored = 0;
+        for (size_t k = 0; k < photon_map_count(map); k++)
+            stored += (double)lit_photon_power(map, k).g;
+        double direct = flux * exp(-thick[i]), expected = flux / (1 - rho);
+        double error = 3 * stored / sqrt((double)photon_map_count(map));
+        print_message("# depth %g: %.6f on the wall, expected %.6f +- %.6f\n", thick[i],
+                      direct + stored, expected, error);
+        /* The fading is not the inverse square beside the lamp: 1 in 1000 is lost there. */
+        assert_true(fabs(direct + stored - expected) < 4 * error + 0.002 * expected);
+        const LightBooks *books = &lit.maps.books.global[0];
+        assert_true(books->emitted ==
+                    books->stored_paths + books->absorbed + books->escaped + books->cut);
+        books = &lit.maps.books.volume[0];
+        assert_true(books->emitted ==
+                    books->stored_paths + books->absorbed + books->escaped + books->cut);
+        lit_done(&lit);
+    }
+}
+
+/* White furnace: a ball of smoke that loses no light, under a white sky, cannot be seen. */
+static void white_furnace(void **state)
+{
+    (void)state;
+    const double thick[] = {0.3, 1};
+    for (int type = 1; type <= 5; type += 4)
+        for (int i = 0; i < 2; i++) {
+            char text[1024];
+            snprintf(text, sizeof text,
+                     HEAD "pms { gi on gi_method map global_photons 200000 } }\n" EYE
+                          "background { rgb 1 }\n"
+                          "sphere { 0, 1 hollow pigment { rgbt 1 } finish { ambient 0 diffuse 0 }\n"
+                          "  interior { media { scattering { %d, %g extinction 4 %s } } } }\n",
+                     type, thick[i] / 4, type == 5 ? "eccentricity 0.6" : "");
+            LitScene lit;
+            lit_make(&lit, text, 2, 3);
+            assert_non_null(lit.maps.volume);
+            View got = view(&lit, 500);
+            /* Photons of a thousandth of the ball's shadow are one independent estimate. */
+            double error = 2 / sqrt((double)photon_map_count(lit.maps.volume) / 4);
+            print_message("# type %d, depth %g: %.4f, expected 1 +- %.4f; of photons %.4f\n", type,
+                          thick[i], got.sum, error, got.part[PART_INDIRECT]);
+            assert_true(fabs(got.sum - 1) < 4 * error + 0.005);
+            lit_done(&lit);
+        }
+}
+
+/* --- hard cases ----------------------------------------------------------------------------- */
+
+static void extreme_media_end(void **state)
+{
+    (void)state;
+    const char *const media[] = {
+        "media { scattering { 1, 1e6 extinction 4 } }",
+        "media { scattering { 1, 1e-6 } }",
+        "media { scattering { 1, 1 extinction 0 } }",
+        "media { absorption 1e6 }",
+        "media { scattering { 5, 1 eccentricity 0.999 extinction 4 } }",
+        "media { scattering { 1, <0, 1, 1e3> extinction 4 } absorption <1e3, 0, 1e-3> }"};
+    for (size_t i = 0; i < sizeof media / sizeof media[0]; i++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 HEAD "photons { count 2000 media 1 } pms { gi on global_photons 2000 } }\n" EYE
+                      "light_source { <0,4,0> 1 }\n%s\n"
+                      "box { <-9,-3,-11>, <9,6,4> hollow pigment { rgb 0.5 } }\n"
+                      "sphere { <0,2,0>, 1 pigment { rgbt 1 } finish { ambient 0 diffuse 0 }\n"
+                      "  interior { ior 1.5 } photons { target refraction on } }\n",
+                 media[i]);
+        LitScene lit;
+        lit_make(&lit, text, 2, 3);
+        View got = view(&lit, 20);
+        assert_true(isfinite(got.sum) && got.sum >= 0);
+        for (int k = 0; k < 2; k++) {
+            const LightBooks *books = k ? lit.maps.books.volume : lit.maps.books.global;
+            if (!books)
+                continue;
+            assert_true(books->emitted ==
+                        books->stored_paths + books->absorbed + books->escaped + books->cut);
+        }
+        lit_done(&lit);
+    }
+}
+
+/* One seed, one map, on any number of threads. */
+static void threads_do_not_matter(void **state)
+{
+    (void)state;
+    uint64_t first = 0;
+    double seen = 0;
+    for (int threads = 1; threads <= 3; threads++) {
+        LitScene lit;
+        lit_make(&lit,
+                 HEAD "photons { count 20000 media 1 } pms { gi on global_photons 5000 } }\n" EYE
+                      "light_source { <0,4,0> 1 }\nmedia { scattering { 2, 0.2 } }\n"
+                      "box { <-9,-3,-11>, <9,6,4> hollow pigment { rgb 0.5 } }\n"
+                      "sphere { <0,2,0>, 1 pigment { rgbt 1 } finish { ambient 0 diffuse 0 }\n"
+                      "  interior { ior 1.5 } photons { target refraction on } }\n",
+                 threads, 3);
+        uint64_t hash = photon_map_hash(lit.maps.volume);
+        double sum = view(&lit, 20).sum;
+        first = threads == 1 ? hash : first;
+        seen = threads == 1 ? sum : seen;
+        assert_true(hash == first && sum == seen);
+        lit_done(&lit);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(volume_map_only_when_called_for),
+        cmocka_unit_test(a_pane_of_ior_1_changes_nothing),
+        cmocka_unit_test(multiple_scattering_in_a_slab),
+        cmocka_unit_test(no_light_is_lost_in_smoke),
+        cmocka_unit_test(white_furnace),
+        cmocka_unit_test(extreme_media_end),
+        cmocka_unit_test(threads_do_not_matter),
+    };
+    return cmocka_run_group_tests_name("volume", tests, NULL, NULL);
+}
