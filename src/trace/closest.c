@@ -32,7 +32,6 @@ typedef struct ClosestQuery {
     RayKind kind;
     double t, slack; /* of the nearest so far */
     double limit;    /* its place reaches no further */
-    double start;    /* the ray's origin, largest coordinate */
     int count;
     Candidate found[TIES_MAX]; /* all that may be in its place, by object */
 } ClosestQuery;
@@ -86,8 +85,8 @@ static inline void test_object(ClosestQuery *query, uint32_t object, Ray *ray)
         !shape_closest(traced->shape, ray, query->thread->shapes, &crossing))
         return;
     double t = crossing.t, slack = TIE_ERRORS * crossing.t_error;
-    if (slack > (t + query->start) * TIE_CAP)
-        slack = (t + query->start) * TIE_CAP;
+    if (slack > t * TIE_CAP)
+        slack = fmin(slack, (t + v3_max_abs(ray->o)) * TIE_CAP);
     bool is_first = query->count == 0 || t + TIE_LINKS * slack < query->t - query->slack;
     if (!is_first && t - slack > query->limit)
         return;
@@ -193,7 +192,6 @@ bool trace_closest(TraceThread *thread, const Ray *ray, RayKind kind, Hit *out)
     query.index_objects = tracer->index_objects;
     query.kind = kind;
     query.count = 0;
-    query.start = v3_max_abs(ray->o);
     Ray rest = *ray;
     for (uint32_t i = 0; i < tracer->unbounded_count; i++)
         test_object(&query, tracer->unbounded[i], &rest);
