@@ -32,6 +32,7 @@ typedef struct PathKeys {
 typedef struct FreshRecords {
     struct IrradianceRecord *items;
     size_t count, capacity;
+    bool is_last;  /* what the picture would use is enough: the rest is made up for */
     bool is_short; /* memory ran out */
 } FreshRecords;
 

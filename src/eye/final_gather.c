@@ -26,6 +26,12 @@ enum {
     FEW_RAYS = 4
 };
 
+/* A ray shorter than this many radii of the estimate where it ends sees its blur. */
+#define NEAR_RADII 0.5
+
+/* How far those may be, in search radii of the map. */
+#define GUIDE_RADII 3
+
 /* The hemisphere in cells: rows from the normal down, columns around it. */
 typedef struct Cells {
     int rows, columns;
@@ -85,7 +91,7 @@ static Rgb reflected_light(EyeThread *eye, const GatherRay *way, const SurfaceSa
     double radius;
     if (!rgb_is_black(diffuse)) {
         Rgb e = irradiance_there(eye, s, s->ng, &radius);
-        if (t < radius && way->depth == 0)
+        if (t < NEAR_RADII * radius && way->depth == 0)
             return light_nearby(eye, s, &way->inside, diffuse, way->depth);
         light = rgb_mul(diffuse, e);
     }
@@ -227,7 +233,7 @@ static void guide(Cells *cells, EyeThread *eye, const ShapePoint *at, int rays)
     GatherLimits limits = eye->options.global_limits;
     limits.max_photons = GUIDE_PHOTONS;
     limits.min_photons = 0;
-    limits.max_radius = INFINITY;
+    limits.max_radius *= GUIDE_RADII;
     int count =
         photon_gather_list(eye->options.global, at->p, cells->n, &limits, eye->gather, &photons);
     float sum = 0, seen = 0;
@@ -349,7 +355,7 @@ static void gather_at(EyeThread *eye, const ShapePoint *at, V3 n, const Interior
 {
     Cells cells;
     V3 ng = v3_dot(at->ng, n) < 0 ? v3_neg(at->ng) : at->ng;
-    int guided = eye->options.global ? rays / GUIDED_PART : 0;
+    int guided = eye->options.global && depth == 0 ? rays / GUIDED_PART : 0;
     cells_init(&cells, eye, n, rays - guided);
     eye->trace.stats.count[STAT_FINAL_GATHERS]++;
     if (guided > 0)

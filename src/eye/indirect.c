@@ -3,7 +3,8 @@
  * The cache is filled in rounds over a grid of pixels that gets finer.  In a round every row of
  * the grid is a piece of work of its own: it reads the cache as it was when the round began, and
  * what the row itself has found; what is new is added in the order of the rows when the round
- * ends.  The picture then only reads; a point that no record covers gathers for itself.
+ * ends.  A last round looks at every pixel for what the picture would not find covered.  The
+ * picture then only reads; a point that no record covers gathers for itself.
  * SPDX-License-Identifier: Apache-2.0 */
 #include "eye/indirect.h"
 
@@ -43,7 +44,7 @@ static Rgb gather_point(EyeThread *eye, const SurfaceSample *s, V3 n, const Inte
     int rays = is_faint ? settings->count / FAINT_PART : settings->count;
     GatheredLight light;
     final_gather(eye, &s->at, n, inside, rays < RAYS_MIN ? RAYS_MIN : rays, &light);
-    if (eye->fresh && !is_faint) {
+    if (eye->fresh) {
         double far = v3_dist(s->at.p, eye->scene->camera.location);
         IrradianceRecord record;
         irradiance_record_init(&record, s->at.p, n, &light, settings->minimum_reuse * far,
@@ -64,7 +65,7 @@ static Rgb irradiance_seen(EyeThread *eye, const SurfaceSample *s, V3 n, const I
         return gather_point(eye, s, n, inside, is_faint);
     double error = settings->error_bound * ERROR_UNIT;
     int needed = settings->is_always_sampling ? settings->nearest_count : 1;
-    if (eye->fresh) {
+    if (eye->fresh && !eye->fresh->is_last) {
         error *= settings->low_error_factor;
         needed = settings->nearest_count;
     }
@@ -87,7 +88,7 @@ Rgb gathered_light(EyeThread *eye, const SurfaceSample *s, const Interiors *insi
 {
     const RadiositySettings *settings = &eye->scene->settings.radiosity;
     Rgb diffuse = surface_diffuse_even(s), back = surface_diffuse_back(s), light = RGB_BLACK;
-    bool is_faint = (double)weight < settings->adc_bailout;
+    bool is_faint = !eye->fresh && (double)weight < settings->adc_bailout;
     /* Without normals of a texture; towards the eye. */
     V3 n = v3_dot(s->at.ns, s->ng) < 0 ? v3_neg(s->at.ns) : s->at.ns;
     if (!rgb_is_black(diffuse))
@@ -107,6 +108,7 @@ typedef struct Round {
     FreshRecords *rows; /* of this round */
     int step;           /* of the grid, pixels */
     int first, stride;  /* rows of the grid that this round does */
+    bool is_last;       /* every pixel, for those that would have to gather for themselves */
 } Round;
 
 static void do_row(void *ctx, size_t index, int thread)
@@ -117,6 +119,7 @@ static void do_row(void *ctx, size_t index, int thread)
     int y = (round->first + (int)index * round->stride) * step + step / 2;
     y = y < height ? y : height - 1;
     eye->fresh = &round->rows[index];
+    eye->fresh->is_last = round->is_last;
     for (int left = 0; left < width && !work_interrupted; left += step) {
         int x = left + step / 2 < width ? left + step / 2 : width - 1;
         EyeSample sample;
@@ -160,21 +163,23 @@ static Status do_rounds(Round *round, const CacheFilling *filling, IrradianceCac
     const RadiositySettings *settings =
         &tracer_scene(round->eyes[0]->trace.tracer)->settings.radiosity;
     int last = block_size(settings->pretrace_end, round->options);
-    int step = block_size(settings->pretrace_start, round->options), grids = 1, done = 0;
+    int step = block_size(settings->pretrace_start, round->options), grids = 2, done = 0;
     for (int s = step; s > last; s /= 2)
         grids++;
-    for (;; step = step / 2 > last ? step / 2 : last) {
+    while (done < grids) {
         int rows = (round->options->height + step - 1) / step;
         round->step = step;
         round->stride = 2;
         for (round->first = 0; round->first < 2 && round->first < rows; round->first++)
             TRY(do_rows(round, (size_t)(rows - round->first + 1) / 2, filling->threads, cache,
                         diag));
+        done++;
         if (filling->progress)
-            filling->progress(filling->progress_ctx, fmin(1, (double)++done / grids));
-        if (step <= last)
-            return OK;
+            filling->progress(filling->progress_ctx, (double)done / grids);
+        round->is_last = done == grids - 1;
+        step = round->is_last ? 1 : step / 2 > last ? step / 2 : last;
     }
+    return OK;
 }
 
 Status indirect_cache_fill(const Tracer *tracer, const EyeOptions *options,

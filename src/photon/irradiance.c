@@ -15,7 +15,8 @@ enum {
     PLACE_PHOTONS = 50, /* of an estimate */
     CLEAR_RAYS = 8,     /* along the surface, to see whether something stands on it */
     AREA_RAYS = 48,     /* to measure the disk */
-    LOOKUP_PLACES = 6,  /* nearest places that are tried */
+    LOOKUP_PLACES = 6,  /* nearest places that are tried, of each way they face */
+    PLACES_MOST = 3 * LOOKUP_PLACES,
     CHUNK_PLACES = 256,
     IRRADIANCE_RNG = 0x697272,
     FLAG_CLUTTERED = 1 /* of a place: not all of the disk is seen from it */
@@ -39,9 +40,30 @@ enum {
 /* How far a place speaks for its surroundings, in radii of its disk. */
 #define PLACE_REACH 1.5
 
+/* Which way places face: along an axis, the lower way or the higher. */
+enum { FACINGS = 6 };
+
+/* A normal that is nearer to an axis than to another by less than this may face along both: it is
+ * more than what its code loses. */
+#define FACING_SLACK 0.1
+
+/* Estimates reach this many times as far as the map's own search radius. */
+#define PLACE_RADIUS_MOST 6
+
+/* Places are found among those that face the same way: a search among all would go through
+ * thousands of others before it finds a small surface that faces elsewhere, or that there is none.
+ * Power: irradiance; direction: code of the radius; flags: see above. */
 struct IrradianceMap {
-    PhotonMap *places; /* power: irradiance; direction: code of the radius; flags: see above */
+    PhotonMap *places[FACINGS]; /* NULL: none */
+    double reach;               /* how far the furthest reaching place speaks, scene units */
 };
+
+/* How much a normal faces one of the six ways. */
+static double facing(V3 n, int way)
+{
+    double along = way / 2 == 0 ? n.x : way / 2 == 1 ? n.y : n.z;
+    return way & 1 ? along : -along;
+}
 
 /* A radius in 16 bits: its logarithm. */
 static uint16_t radius_encode(double radius)
@@ -61,6 +83,7 @@ typedef struct PlaceWork {
     Photon *places;
     size_t count;
     uint64_t seed;
+    double radius; /* the most an estimate reaches */
     TraceThread *threads;
     GatherScratch **scratches;
 } PlaceWork;
@@ -174,7 +197,7 @@ static void estimate(PlaceWork *work, TraceThread *thread, GatherScratch *scratc
     Photon *place = &work->places[number];
     Rng rng = rng_at(work->seed, IRRADIANCE_RNG, number);
     const GatherLimits limits = {.max_photons = PLACE_PHOTONS,
-                                 .max_radius = INFINITY,
+                                 .max_radius = work->radius,
                                  .shape = GATHER_DISK,
                                  .normal_cosine = PHOTON_COSINE};
     Disk disk = {.p = photon_place(work->photons, place), .n = normal14_decode(place->flags >> 2)};
@@ -244,18 +267,59 @@ static Status estimate_all(PlaceWork *work, int threads, Diag *diag)
     return status;
 }
 
-Status irradiance_map_new(const Tracer *tracer, const PhotonMap *photons, Photon *places,
-                          size_t count, uint64_t seed, int threads, Diag *diag, IrradianceMap **out)
+/* The way a normal faces most. */
+static int facing_of(V3 n)
 {
-    PlaceWork work = {
-        .tracer = tracer, .photons = photons, .places = places, .count = count, .seed = seed};
+    int best = 0;
+    for (int way = 1; way < FACINGS; way++)
+        if (facing(n, way) > facing(n, best))
+            best = way;
+    return best;
+}
+
+/* Build the trees; `places` is freed. */
+static Status build(const PlaceWork *work, int threads, Diag *diag, IrradianceMap *map)
+{
+    Status status = OK;
+    for (int way = 0; way < FACINGS && status == OK; way++) {
+        size_t count = 0, used = 0;
+        for (size_t i = 0; i < work->count; i++)
+            count += facing_of(normal14_decode(work->places[i].flags >> 2)) == way;
+        if (count == 0)
+            continue;
+        Photon *part = mem_array(count, sizeof *part);
+        if (!part)
+            status = diag_no_memory(diag, "irradiance");
+        for (size_t i = 0; part && i < work->count; i++)
+            if (facing_of(normal14_decode(work->places[i].flags >> 2)) == way)
+                part[used++] = work->places[i];
+        if (part)
+            status = photon_map_new(diag, part, count, photon_map_center(work->photons), threads,
+                                    &map->places[way]);
+    }
+    for (size_t i = 0; i < work->count; i++)
+        map->reach = fmax(map->reach, PLACE_REACH * radius_decode(&work->places[i]));
+    return status;
+}
+
+Status irradiance_map_new(const Tracer *tracer, const PhotonMap *photons, Photon *places,
+                          size_t count, const IrradianceOptions *options, Diag *diag,
+                          IrradianceMap **out)
+{
+    PlaceWork work = {.tracer = tracer,
+                      .photons = photons,
+                      .places = places,
+                      .count = count,
+                      .seed = options->seed,
+                      .radius = PLACE_RADIUS_MOST * options->radius};
+    if (!(work.radius > 0))
+        work.radius = INFINITY;
     IrradianceMap *map = mem_alloc(sizeof *map);
-    Status status = map ? estimate_all(&work, threads, diag) : diag_no_memory(diag, "irradiance");
+    Status status =
+        map ? estimate_all(&work, options->threads, diag) : diag_no_memory(diag, "irradiance");
     if (status == OK)
-        status =
-            photon_map_new(diag, places, count, photon_map_center(photons), threads, &map->places);
-    else
-        mem_free(places);
+        status = build(&work, options->threads, diag, map);
+    mem_free(places);
     if (status == OK)
         *out = map;
     else
@@ -265,36 +329,26 @@ Status irradiance_map_new(const Tracer *tracer, const PhotonMap *photons, Photon
 
 void irradiance_map_free(IrradianceMap *map)
 {
-    if (!map)
-        return;
-    photon_map_free(map->places);
+    for (int way = 0; map && way < FACINGS; way++)
+        photon_map_free(map->places[way]);
     mem_free(map);
-}
-
-size_t irradiance_map_count(const IrradianceMap *map)
-{
-    return photon_map_count(map->places);
-}
-
-uint64_t irradiance_map_hash(const IrradianceMap *map)
-{
-    return photon_map_hash(map->places);
 }
 
 /* --- looking up --------------------------------------------------------------------------- */
 
 typedef struct NearPlace {
     Photon place;
+    V3 p;
     double distance2; /* as GATHER_DISK measures it */
 } NearPlace;
 
-/* Take the places found, nearest first. */
+/* Sort places found into those there are, nearest first; returns how many there are then. */
 static int sort_places(const PhotonMap *map, const uint32_t *index, int count, V3 p, V3 n,
-                       NearPlace *out)
+                       NearPlace *out, int sorted)
 {
-    int sorted = 0;
-    for (int i = 0; i < count && sorted < LOOKUP_PLACES; i++) {
+    for (int i = 0; i < count && sorted < PLACES_MOST; i++) {
         NearPlace near = {.place = photon_map_at(map, index[i])};
+        near.p = photon_place(map, &near.place);
         near.distance2 = photon_distance2(map, &near.place, p, n);
         int at = sorted++;
         for (; at > 0 && out[at - 1].distance2 > near.distance2; at--)
@@ -304,28 +358,39 @@ static int sort_places(const PhotonMap *map, const uint32_t *index, int count, V
     return sorted;
 }
 
+/* Find the nearest places that face as n does. */
+static int find_places(const IrradianceMap *map, GatherScratch *scratch, V3 p, V3 n, NearPlace *out)
+{
+    const GatherLimits limits = {.max_photons = LOOKUP_PLACES + 1,
+                                 .max_radius = map->reach,
+                                 .shape = GATHER_DISK,
+                                 .normal_cosine = PLACE_COSINE};
+    double most = fmax(fabs(n.x), fmax(fabs(n.y), fabs(n.z)));
+    int found = 0;
+    for (int way = 0; way < FACINGS; way++) {
+        const uint32_t *index;
+        double radius2;
+        if (!map->places[way] || facing(n, way) < most - FACING_SLACK)
+            continue;
+        int count = photon_nearest(map->places[way], p, n, &limits, scratch, &index, &radius2);
+        found = sort_places(map->places[way], index, count < LOOKUP_PLACES ? count : LOOKUP_PLACES,
+                            p, n, out, found);
+    }
+    return found;
+}
+
 Rgb irradiance_at(const IrradianceMap *map, TraceThread *thread, GatherScratch *scratch,
                   const ShapePoint *at, V3 n, double *radius)
 {
+    NearPlace near[PLACES_MOST];
     *radius = 0;
-    if (!map)
-        return RGB_BLACK;
-    const GatherLimits limits = {.max_photons = LOOKUP_PLACES + 1,
-                                 .max_radius = INFINITY,
-                                 .shape = GATHER_DISK,
-                                 .normal_cosine = PLACE_COSINE};
-    const uint32_t *index;
-    double radius2;
-    NearPlace near[LOOKUP_PLACES];
-    int count = photon_nearest(map->places, at->p, n, &limits, scratch, &index, &radius2);
-    count = sort_places(map->places, index, count, at->p, n, near);
+    int count = map ? find_places(map, scratch, at->p, n, near) : 0;
     for (int i = 0; i < count; i++) {
         const Photon *place = &near[i].place;
         double within = radius_decode(place), lift = CLEAR_HEIGHT * sqrt(near[i].distance2);
         if (!(near[i].distance2 <= PLACE_REACH * PLACE_REACH * within * within))
             continue;
-        V3 other =
-            v3_mad(photon_place(map->places, place), lift, normal14_decode(place->flags >> 2));
+        V3 other = v3_mad(near[i].p, lift, normal14_decode(place->flags >> 2));
         V3 own = v3_mad(at->p, lift + 2 * at->p_error, n);
         if ((place->flags & FLAG_CLUTTERED) && !is_clear(thread, own, other))
             continue;

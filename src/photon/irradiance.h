@@ -11,15 +11,19 @@
 
 typedef struct IrradianceMap IrradianceMap;
 
+typedef struct IrradianceOptions {
+    uint64_t seed;
+    int threads;
+    double radius; /* of searches in the photon map, scene units */
+} IrradianceOptions;
+
 /* Estimate the irradiance at places.  Takes ownership of `places` (their powers and directions do
  * not matter), as photon_map_new does.  Deterministic for any number of threads.  Free with
  * irradiance_map_free. */
 Status irradiance_map_new(const Tracer *tracer, const PhotonMap *photons, Photon *places,
-                          size_t count, uint64_t seed, int threads, Diag *diag,
+                          size_t count, const IrradianceOptions *options, Diag *diag,
                           IrradianceMap **out);
 void irradiance_map_free(IrradianceMap *map);
-size_t irradiance_map_count(const IrradianceMap *map);
-uint64_t irradiance_map_hash(const IrradianceMap *map);
 
 struct GatherScratch;
 

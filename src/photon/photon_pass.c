@@ -173,13 +173,16 @@ static Status make_irradiance(Emission *emission, Stats *stats, PhotonMaps *maps
 {
     PhotonList places;
     double started = clock_wall();
+    int most = gather_most(&tracer_scene(emission->tracer)->settings.photons);
+    IrradianceOptions options = {.seed = emission->options->seed,
+                                 .threads = emission->options->threads,
+                                 .radius = photon_map_radius(maps->global, most)};
     Status status = emission_run_places(emission, IRRADIANCE_PART, &places);
     if (status == OK && places.count == 0)
         mem_free(places.items);
     else if (status == OK)
         status = irradiance_map_new(emission->tracer, maps->global, places.items, places.count,
-                                    emission->options->seed, emission->options->threads,
-                                    emission->diag, &maps->irradiance);
+                                    &options, emission->diag, &maps->irradiance);
     stats->seconds[PHASE_IRRADIANCE] += clock_wall() - started;
     return status;
 }
