@@ -11,13 +11,18 @@ enum {
     PIECES_MAX = 2 * MEDIA_CELLS_MAX, /* of the light along a ray */
     HALVINGS_MAX = 10,                /* of a piece */
     CELLS_SMALL = 32,                 /* more cells than these are small enough as they are */
-    BREAKS_BY_ANGLE = 8,
+    BREAKS_BY_ANGLE = 6,
     PLACES_FIRST_MAX = 64,
     PLACES_MAX = 256 /* shadow rays to one light for one ray */
 };
 
-/* Pieces of the light are halved until their sum is known to this part of the whole. */
+/* Pieces of the light are halved until the rules that sum them differ by less than this part of
+ * what is known of the whole, or of the tolerance: what they are wrong by is far below that. */
 #define PIECE_ERROR 1e-3f
+#define PIECE_TOLERANCE 0.05f
+
+/* Places in a part of a cell that is thinner than this are even. */
+#define THIN_DEPTH 0.25
 
 /* Places in a part of a cell, counted by how much of what comes from there passes it (in the
  * channel that goes furthest): v from 0 to 1. */
@@ -25,7 +30,7 @@ typedef struct Warp {
     const MediaCell *cell;
     double begin, length; /* t */
     double x;             /* extinction */
-    double lost;          /* part that does not pass; 0: next to nothing, v is even in t */
+    double lost;          /* part that does not pass; 0: little, v is even in t */
 } Warp;
 
 /* Between two places whose shadows differ by more than this, over the channels, is an edge. */
@@ -35,6 +40,7 @@ typedef struct Warp {
 typedef struct Piece {
     Warp warp;
     double low, high; /* v */
+    double skew;      /* share of its begin in the light of begin and end; even between them */
     Rgb sum;          /* light up to its end */
     double part;      /* the same as a part of the whole, over the channels */
 } Piece;
@@ -54,8 +60,8 @@ typedef struct LightPlace {
 
 typedef struct Scatter {
     EyeThread *eye;
-    const MediaHere *here;
     const MediaProfile *profile;
+    MediaLobes lobes;
     const Ray *ray;
     const EyeLight *light;
     MediaCare care;
@@ -71,7 +77,7 @@ static Warp make_warp(const MediaCell *cell, double begin, double end)
 {
     Warp warp = {.cell = cell, .begin = begin, .length = end - begin};
     warp.x = (double)rgb_min(cell->point.extinction);
-    warp.lost = warp.x * warp.length > 1e-4 ? -expm1(-warp.x * warp.length) : 0;
+    warp.lost = warp.x * warp.length > THIN_DEPTH ? -expm1(-warp.x * warp.length) : 0;
     return warp;
 }
 
@@ -97,8 +103,8 @@ static Rgb light_here(const Scatter *s, const Warp *warp, double v)
     LightSample sample = light_at(light, light->location, ray_at(s->ray, t));
     if (rgb_is_black(sample.color))
         return RGB_BLACK;
-    V3 p = ray_at(s->ray, s->here->is_homogeneous ? t : cell->at);
-    Rgb scattered = media_scattered(s->here, p, v3_dot(sample.to_light, s->ray->d));
+    V3 p = ray_at(s->ray, cell->at);
+    Rgb scattered = media_scattered(&s->lobes, p, v3_dot(sample.to_light, s->ray->d));
     /* What passes up to here, over the part of it that v stands for. */
     Rgb x = cell->point.extinction;
     float way = (float)(t - warp->begin), rest = warp->lost == 0 ? 0 : (float)warp->x;
@@ -108,13 +114,14 @@ static Rgb light_here(const Scatter *s, const Warp *warp, double v)
     return rgb_scale(rgb_mul(rgb_mul(scattered, sample.color), media_clear(depth)), (float)measure);
 }
 
-static void add_piece(Scatter *s, const Warp *warp, double low, double high, Rgb light)
+static void add_piece(Scatter *s, const Warp *warp, double low, double high, double skew, Rgb light)
 {
     LightRun *run = &s->run;
     if (run->count == PIECES_MAX)
         return;
     run->whole = rgb_add(run->whole, light);
-    run->pieces[run->count++] = (Piece){.warp = *warp, .low = low, .high = high, .sum = run->whole};
+    run->pieces[run->count++] =
+        (Piece){.warp = *warp, .low = low, .high = high, .skew = skew, .sum = run->whole};
 }
 
 static float sum_abs(Rgb c)
@@ -135,7 +142,8 @@ static void sum_light(Scatter *s, const Warp *warp, double low, Rgb first, doubl
     float error = sum_abs(rgb_sub(simpson, trapeze));
     float limit = fmaxf(s->enough, PIECE_ERROR * sum_abs(s->run.whole));
     if (error <= limit || halvings == 0 || s->run.count > PIECES_MAX / 2) {
-        add_piece(s, warp, low, high, simpson);
+        float all = rgb_sum(ends);
+        add_piece(s, warp, low, high, all > 0 ? (double)(rgb_sum(first) / all) : 0.5, simpson);
         return;
     }
     sum_light(s, warp, low, first, middle, between, halvings - 1);
@@ -169,7 +177,7 @@ static void add_cell(Scatter *s, const MediaCell *cell, double begin, double end
         return;
     Warp warp = make_warp(cell, begin, end);
     if (s->profile->count > CELLS_SMALL) {
-        add_piece(s, &warp, 0, 1, light_here(s, &warp, 0.5));
+        add_piece(s, &warp, 0, 1, 0.5, light_here(s, &warp, 0.5));
         return;
     }
     double low = 0;
@@ -232,7 +240,9 @@ static double run_t(const LightRun *run, double part)
 {
     double inside;
     const Piece *piece = run_piece(run, part, &inside);
-    return warp_t(&piece->warp, piece->low + (piece->high - piece->low) * inside);
+    double skew = piece->skew, way = skew + sqrt(skew * skew + (1 - 2 * skew) * inside);
+    double share = way > 0 ? fmin(1, inside / way) : 0;
+    return warp_t(&piece->warp, piece->low + (piece->high - piece->low) * share);
 }
 
 /* --- shadows ------------------------------------------------------------------------------ */
@@ -387,8 +397,13 @@ void media_scatter(EyeThread *eye, const MediaHere *here, const MediaProfile *pr
         has_scattering |= !rgb_is_black(profile->cells[i].point.scattering);
     if (!has_scattering)
         return;
-    Scatter s = {
-        .eye = eye, .here = here, .profile = profile, .ray = ray, .care = media_care(here)};
+    Scatter s;
+    s.eye = eye;
+    s.profile = profile;
+    s.ray = ray;
+    s.care = media_care(here);
+    s.enough = PIECE_TOLERANCE * s.care.tolerance;
+    media_lobes(here, &s.lobes);
     for (int i = 0; i < eye->light_count; i++) {
         s.light = &eye->lights[i];
         double begin = profile->cells[0].begin, end = profile->cells[profile->count - 1].end;

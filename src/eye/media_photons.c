@@ -3,7 +3,7 @@
 #include "eye/air_int.h"
 
 typedef struct PhotonSum {
-    const MediaHere *here;
+    MediaLobes lobes;
     const MediaProfile *profile;
     const Ray *ray;
     double focused[3], scattered[3];
@@ -29,7 +29,7 @@ static void add_photon(void *ctx, const VolumePhoton *photon)
     PhotonSum *sum = ctx;
     const MediaCell *cell = cell_at(sum->profile, photon->t);
     V3 p = ray_at(sum->ray, photon->t);
-    Rgb scattered = media_scattered(sum->here, p, v3_dot(photon->from, sum->ray->d));
+    Rgb scattered = media_scattered(&sum->lobes, p, v3_dot(photon->from, sum->ray->d));
     Rgb depth = rgb_mad(cell->depth, (float)(photon->t - cell->begin), cell->point.extinction);
     Rgb light = rgb_mul(rgb_mul(scattered, photon->power), media_clear(depth));
     double *to = photon->is_focused ? sum->focused : sum->scattered;
@@ -47,7 +47,8 @@ static Rgb rgb_of(const double sum[3])
 void media_photons(EyeThread *eye, const MediaHere *here, const MediaProfile *profile,
                    const Ray *ray, Rgb light[PART_COUNT])
 {
-    PhotonSum sum = {.here = here, .profile = profile, .ray = ray};
+    PhotonSum sum = {.profile = profile, .ray = ray};
+    media_lobes(here, &sum.lobes);
     double end = profile->cells[profile->count - 1].end;
     volume_along(eye->options.volume, ray, end, add_photon, &sum);
     eye->trace.stats.count[STAT_GATHERS]++;

@@ -99,7 +99,7 @@ Rgb rgbe_decode(const uint8_t rgbe[4])
 {
     if (rgbe[3] == 0)
         return RGB_BLACK;
-    float step = ldexpf(1, rgbe[3] - RGBE_BIAS);
+    float step = (float)power_of_two(rgbe[3] - RGBE_BIAS);
     return rgb((float)rgbe[0] * step, (float)rgbe[1] * step, (float)rgbe[2] * step);
 }
 

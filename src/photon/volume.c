@@ -217,6 +217,7 @@ static void visit_block(const VolumeQuery *query, uint32_t number)
 {
     const PhotonBlock *block = &query->index->map->blocks[number];
     float radius2 = query->index->radius[number] * query->index->radius[number];
+    float over2 = 1 / radius2, most = 2 / (float)PMS_PI * over2;
     float along[BLOCK_PHOTONS], away2[BLOCK_PHOTONS];
     for (int i = 0; i < BLOCK_PHOTONS; i++) {
         float x = block->pos[0][i] - query->o[0], y = block->pos[1][i] - query->o[1];
@@ -229,7 +230,7 @@ static void visit_block(const VolumeQuery *query, uint32_t number)
     for (int i = 0; i < BLOCK_PHOTONS; i++) {
         if (!(away2[i] < radius2 && along[i] > query->begin && along[i] < query->end))
             continue;
-        float kernel = 2 * (1 - away2[i] / radius2) / ((float)PMS_PI * radius2);
+        float kernel = most * (1 - away2[i] * over2);
         visit_photon(query, block, i, (double)along[i] + query->shift, kernel);
     }
 }

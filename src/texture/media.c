@@ -7,9 +7,10 @@
 typedef struct MieLobe {
     double scale;
     int strength, power;
+    int squarings; /* power is 2 to this */
 } MieLobe;
 
-static const MieLobe hazy = {0.576655375, 9, 8}, murky = {0.495714547, 50, 32};
+static const MieLobe hazy = {0.576655375, 9, 8, 3}, murky = {0.495714547, 50, 32, 5};
 
 #define RAYLEIGH_SCALE 0.799372013
 
@@ -18,7 +19,10 @@ static const MieLobe hazy = {0.576655375, 9, 8}, murky = {0.495714547, 50, 32};
 
 static double mie_value(const MieLobe *mie, double cosine)
 {
-    return mie->scale * (1 + mie->strength * pow((1 + cosine) / 2, mie->power));
+    double lobe = (1 + cosine) / 2;
+    for (int i = 0; i < mie->squarings; i++)
+        lobe *= lobe;
+    return mie->scale * (1 + mie->strength * lobe);
 }
 
 /* Draw from the lobe with the chance it has of the whole, else from all directions. */

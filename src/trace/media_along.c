@@ -62,19 +62,66 @@ void media_at(const MediaHere *here, V3 p, MediaPoint *out)
         }
 }
 
-Rgb media_scattered(const MediaHere *here, V3 p, double cosine)
+static MediaLobe medium_lobe(const MediaHere *here, const Medium *medium, V3 p)
+{
+    Rgb scattering = rgb_mul(medium_density(medium, p), medium->scattering);
+    if (here->is_conserving)
+        scattering = rgb_scale(scattering, (float)medium_gain(medium));
+    return (MediaLobe){medium->phase, (double)medium->eccentricity, scattering};
+}
+
+/* Add light scattered alike to what is there; returns false when there is no room. */
+static bool add_lobe(MediaLobes *to, MediaLobe lobe)
+{
+    for (int i = 0; i < to->count; i++) {
+        MediaLobe *old = &to->lobes[i];
+        if (old->phase == lobe.phase && old->eccentricity == lobe.eccentricity) {
+            old->scattering = rgb_add(old->scattering, lobe.scattering);
+            return true;
+        }
+    }
+    if (to->count == (int)(sizeof to->lobes / sizeof to->lobes[0]))
+        return false;
+    to->lobes[to->count++] = lobe;
+    return true;
+}
+
+void media_lobes(const MediaHere *here, MediaLobes *out)
+{
+    out->here = here;
+    out->count = 0;
+    bool is_complete = here->is_homogeneous;
+    for (int l = 0; l < here->list_count && is_complete; l++)
+        for (int i = 0; i < here->lists[l].count && is_complete; i++) {
+            const Medium *medium = here->lists[l].media[i];
+            if (!rgb_is_black(medium->scattering))
+                is_complete = add_lobe(out, medium_lobe(here, medium, v3(0, 0, 0)));
+        }
+    if (!is_complete)
+        out->count = 0;
+}
+
+static Rgb lobe_value(const MediaLobe *lobe, double cosine)
+{
+    double phase = phase_value(lobe->phase, lobe->eccentricity, cosine);
+    return rgb_scale(lobe->scattering, (float)phase);
+}
+
+Rgb media_scattered(const MediaLobes *lobes, V3 p, double cosine)
 {
     Rgb sum = RGB_BLACK;
+    for (int i = 0; i < lobes->count; i++)
+        sum = rgb_add(sum, lobe_value(&lobes->lobes[i], cosine));
+    if (lobes->count > 0)
+        return sum;
+    const MediaHere *here = lobes->here;
     for (int l = 0; l < here->list_count; l++)
         for (int i = 0; i < here->lists[l].count; i++) {
             const Medium *medium = here->lists[l].media[i];
             if (rgb_is_black(medium->scattering))
                 continue;
-            double phase = phase_value(medium->phase, (double)medium->eccentricity, cosine);
-            if (here->is_conserving)
-                phase *= medium_gain(medium);
-            Rgb scattering = rgb_mul(medium_density(medium, p), medium->scattering);
-            sum = rgb_mad(sum, (float)phase, scattering);
+            MediaLobe lobe = medium_lobe(here, medium, p);
+            sum = rgb_add(sum, lobe_value(&lobe, cosine));
         }
     return sum;
 }

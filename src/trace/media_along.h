@@ -40,9 +40,22 @@ typedef struct MediaPoint {
 } MediaPoint;
 void media_at(const MediaHere *here, V3 p, MediaPoint *out);
 
-/* Return the sum of scattering times phase function at p, for light that turns by an angle of
- * this cosine. */
-Rgb media_scattered(const MediaHere *here, V3 p, double cosine);
+/* Scattering times phase function, made ready to be asked for many directions and places. */
+typedef struct MediaLobe {
+    PhaseKind phase;
+    double eccentricity;
+    Rgb scattering;
+} MediaLobe;
+
+typedef struct MediaLobes {
+    const MediaHere *here; /* must outlive this */
+    int count;             /* 0: the media are asked at the place itself */
+    MediaLobe lobes[INTERIORS_MAX + 1];
+} MediaLobes;
+void media_lobes(const MediaHere *here, MediaLobes *out);
+
+/* Return their sum at p, for light that turns by an angle of this cosine. */
+Rgb media_scattered(const MediaLobes *lobes, V3 p, double cosine);
 
 /* How finely to look: the strictest of the media there. */
 typedef struct MediaCare {
@@ -77,6 +90,10 @@ void media_profile(const MediaHere *here, const Ray *ray, double begin, double e
 /* Return exp(-depth), channel by channel. */
 static inline Rgb media_clear(Rgb depth)
 {
+    if (depth.r == depth.g && depth.r == depth.b) {
+        float clear = expf(-depth.r);
+        return rgb(clear, clear, clear);
+    }
     return rgb(expf(-depth.r), expf(-depth.g), expf(-depth.b));
 }
 
