@@ -16,7 +16,8 @@ enum {
     CLEAR_RAYS = 8,     /* along the surface, to see whether something stands on it */
     AREA_RAYS = 48,     /* to measure the disk */
     LOOKUP_PLACES = 6,  /* nearest places that are tried, of each way they face */
-    PLACES_MOST = 3 * LOOKUP_PLACES,
+    LOOKUP_MORE = 32,   /* and if none of those is near for its radius */
+    PLACES_MOST = 3 * LOOKUP_MORE,
     CHUNK_PLACES = 256,
     IRRADIANCE_RNG = 0x697272,
     FLAG_CLUTTERED = 1 /* of a place: not all of the disk is seen from it */
@@ -39,6 +40,10 @@ enum {
 
 /* How far a place speaks for its surroundings, in radii of its disk. */
 #define PLACE_REACH 1.5
+
+/* Places are so dense that one nearer than this, in radii, is found almost always, except where
+ * bright light ends: there places of small disks crowd on one side. */
+#define PLACE_NEAR 0.5
 
 /* Which way places face: along an axis, the lower way or the higher. */
 enum { FACINGS = 6 };
@@ -339,43 +344,63 @@ void irradiance_map_free(IrradianceMap *map)
 typedef struct NearPlace {
     Photon place;
     V3 p;
-    double distance2; /* as GATHER_DISK measures it */
+    double radius;
+    double off2; /* square of the distance in radii, as GATHER_DISK measures it */
 } NearPlace;
 
-/* Sort places found into those there are, nearest first; returns how many there are then. */
+/* Sort places found into those there are, nearest in radii of their own first; returns how many
+ * there are then. */
 static int sort_places(const PhotonMap *map, const uint32_t *index, int count, V3 p, V3 n,
                        NearPlace *out, int sorted)
 {
-    for (int i = 0; i < count && sorted < PLACES_MOST; i++) {
+    for (int i = 0; i < count; i++) {
         NearPlace near = {.place = photon_map_at(map, index[i])};
         near.p = photon_place(map, &near.place);
-        near.distance2 = photon_distance2(map, &near.place, p, n);
+        near.radius = radius_decode(&near.place);
+        near.off2 = photon_distance2(map, &near.place, p, n) / (near.radius * near.radius);
+        if (!(near.off2 <= PLACE_REACH * PLACE_REACH))
+            continue;
         int at = sorted++;
-        for (; at > 0 && out[at - 1].distance2 > near.distance2; at--)
+        for (; at > 0 && out[at - 1].off2 > near.off2; at--)
             out[at] = out[at - 1];
         out[at] = near;
     }
     return sorted;
 }
 
-/* Find the nearest places that face as n does. */
-static int find_places(const IrradianceMap *map, GatherScratch *scratch, V3 p, V3 n, NearPlace *out)
+/* Find places that face as n does, of each way the `most` nearest; *is_all says whether there are
+ * no more. */
+static int find_places(const IrradianceMap *map, GatherScratch *scratch, V3 p, V3 n, int most,
+                       NearPlace *out, bool *is_all)
 {
-    const GatherLimits limits = {.max_photons = LOOKUP_PLACES + 1,
+    const GatherLimits limits = {.max_photons = most + 1,
                                  .max_radius = map->reach,
                                  .shape = GATHER_DISK,
                                  .normal_cosine = PLACE_COSINE};
-    double most = fmax(fabs(n.x), fmax(fabs(n.y), fabs(n.z)));
+    double largest = fmax(fabs(n.x), fmax(fabs(n.y), fabs(n.z)));
     int found = 0;
+    *is_all = true;
     for (int way = 0; way < FACINGS; way++) {
         const uint32_t *index;
         double radius2;
-        if (!map->places[way] || facing(n, way) < most - FACING_SLACK)
+        if (!map->places[way] || facing(n, way) < largest - FACING_SLACK)
             continue;
         int count = photon_nearest(map->places[way], p, n, &limits, scratch, &index, &radius2);
-        found = sort_places(map->places[way], index, count < LOOKUP_PLACES ? count : LOOKUP_PLACES,
-                            p, n, out, found);
+        *is_all = *is_all && count <= most;
+        found = sort_places(map->places[way], index, count < most ? count : most, p, n, out, found);
     }
+    return found;
+}
+
+/* Find the places that may speak for p, best first.  The nearest is not the best: beside a bright
+ * patch, where places crowd, it would be one of the patch, and the patch would grow. */
+static int find_speakers(const IrradianceMap *map, GatherScratch *scratch, V3 p, V3 n,
+                         NearPlace *out)
+{
+    bool is_all;
+    int found = find_places(map, scratch, p, n, LOOKUP_PLACES, out, &is_all);
+    if (!is_all && !(found > 0 && out[0].off2 < PLACE_NEAR * PLACE_NEAR))
+        found = find_places(map, scratch, p, n, LOOKUP_MORE, out, &is_all);
     return found;
 }
 
@@ -384,17 +409,15 @@ Rgb irradiance_at(const IrradianceMap *map, TraceThread *thread, GatherScratch *
 {
     NearPlace near[PLACES_MOST];
     *radius = 0;
-    int count = map ? find_places(map, scratch, at->p, n, near) : 0;
+    int count = map ? find_speakers(map, scratch, at->p, n, near) : 0;
     for (int i = 0; i < count; i++) {
         const Photon *place = &near[i].place;
-        double within = radius_decode(place), lift = CLEAR_HEIGHT * sqrt(near[i].distance2);
-        if (!(near[i].distance2 <= PLACE_REACH * PLACE_REACH * within * within))
-            continue;
+        double lift = CLEAR_HEIGHT * near[i].radius * sqrt(near[i].off2);
         V3 other = v3_mad(near[i].p, lift, normal14_decode(place->flags >> 2));
         V3 own = v3_mad(at->p, lift + 2 * at->p_error, n);
         if ((place->flags & FLAG_CLUTTERED) && !is_clear(thread, own, other))
             continue;
-        *radius = within;
+        *radius = near[i].radius;
         return rgbe_decode(place->rgbe);
     }
     return RGB_BLACK;

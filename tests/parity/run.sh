@@ -22,7 +22,8 @@ n=0 failed=0
 region() {
     case $1 in
     caustic_glass) echo 110,175,210,65 ;;
-    coloured_glass | gems | glass_sphere) echo 0,120,320,120 ;;
+    coloured_glass | glass_sphere) echo 0,120,320,120 ;;
+    gems) echo 40,165,170,75 ;; # not the stones: on ways inside them povray absorbs less
     magnifying_lens) echo 105,140,190,100 ;;
     many_lights) echo 60,125,220,100 ;;
     metal_ring) echo 0,100,320,140 ;;
