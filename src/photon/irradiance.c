@@ -43,7 +43,7 @@ enum {
 
 /* Places are so dense that one nearer than this, in radii, is found almost always, except where
  * bright light ends: there places of small disks crowd on one side. */
-#define PLACE_NEAR 0.5
+#define PLACE_NEAR 0.7
 
 /* Which way places face: along an axis, the lower way or the higher. */
 enum { FACINGS = 6 };
