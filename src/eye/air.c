@@ -90,9 +90,10 @@ static void add_rainbows(EyeThread *eye, const Ray *ray, double length, Veil *ve
         light = rgb_mad(light, (float)(1 - k), color5_rgb(c));
         count++;
     }
-    if (count > 0)
-        add_layer(veil, rgb_scale(clear, 1.0f / (float)count),
-                  rgb_scale(light, 1.0f / (float)count));
+    if (count > 0) {
+        veil->back = rgb_scale(clear, 1.0f / (float)count);
+        add_layer(veil, veil->back, rgb_scale(light, 1.0f / (float)count));
+    }
 }
 
 /* --- media -------------------------------------------------------------------------------- */
@@ -121,16 +122,22 @@ static double scene_end(const Tracer *tracer, const Ray *ray)
     return fmax(along, 0) + 2 * radius;
 }
 
+void air_profile(EyeThread *eye, const MediaHere *here, const Ray *ray, double length,
+                 MediaProfile *out)
+{
+    double end = fmin(length, MEDIA_FAR);
+    media_profile(here, ray, 0, end, scene_end(eye->trace.tracer, ray), &eye->rng, out);
+}
+
 static void add_media(EyeThread *eye, const MediaHere *here, const Ray *ray, double length,
-                      Veil *veil)
+                      AirLight wanted, Veil *veil)
 {
     MediaProfile profile;
-    double end = fmin(length, MEDIA_FAR);
-    media_profile(here, ray, 0, end, scene_end(eye->trace.tracer, ray), &eye->rng, &profile);
+    air_profile(eye, here, ray, length, &profile);
     Rgb light = glow(&profile);
-    if (plan_has(eye->plan, FEATURE_LIGHTS))
+    if (wanted == AIR_SEEN && plan_has(eye->plan, FEATURE_LIGHTS))
         media_scatter(eye, here, &profile, ray, &light);
-    if (eye->options.volume && !here->is_conserving) {
+    if (wanted == AIR_SEEN && eye->options.volume) {
         Rgb found[PART_COUNT] = {RGB_BLACK};
         media_photons(eye, here, &profile, ray, found);
         for (int i = 0; i < PART_COUNT; i++)
@@ -140,18 +147,18 @@ static void add_media(EyeThread *eye, const MediaHere *here, const Ray *ray, dou
 }
 
 void air_along(EyeThread *eye, const Ray *ray, double length, const Interiors *inside,
-               bool is_indirect, Veil *out)
+               AirLight wanted, Veil *out)
 {
     MediaHere here;
-    *out = (Veil){.through = RGB_WHITE};
+    *out = (Veil){.through = RGB_WHITE, .front = RGB_WHITE, .back = RGB_WHITE};
     media_here(eye->trace.tracer, inside, &here);
-    here.is_conserving = is_indirect;
     if (!here.is_open)
         return;
     if (plan_has(eye->plan, FEATURE_FOG))
         add_fogs(eye->scene, ray, length, out);
+    out->front = out->through;
     if (plan_has(eye->plan, FEATURE_MEDIA) && here.list_count > 0)
-        add_media(eye, &here, ray, length, out);
+        add_media(eye, &here, ray, length, wanted, out);
     if (plan_has(eye->plan, FEATURE_RAINBOW))
         add_rainbows(eye, ray, length, out);
 }

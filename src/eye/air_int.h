@@ -9,15 +9,24 @@
 /* What a stretch of a ray does to what is seen through it. */
 typedef struct Veil {
     Rgb through;           /* share of what lies behind that is seen */
+    Rgb front, back;       /* of it what fog before the media and rainbows behind them let pass */
     Rgb light[PART_COUNT]; /* added in front of it */
 } Veil;
 
+/* What a ray looks for in media. */
+typedef enum AirLight {
+    AIR_SEEN, /* their own light and what they scatter to the eye */
+    AIR_GLOW  /* their own light */
+} AirLight;
+
 /* Find what lies along the first `length` scene units of a ray inside `inside`; an infinite length
- * is that of a ray that meets nothing.
- *
- * is_indirect  the ray looks for light that will be reflected or scattered again. */
+ * is that of a ray that meets nothing. */
 void air_along(EyeThread *eye, const Ray *ray, double length, const Interiors *inside,
-               bool is_indirect, Veil *out);
+               AirLight wanted, Veil *out);
+
+/* Cut the first `length` scene units of a ray into cells. */
+void air_profile(EyeThread *eye, const MediaHere *here, const Ray *ray, double length,
+                 MediaProfile *out);
 
 /* Return what passes the media along the first `length` scene units of a ray. */
 Rgb air_clear(EyeThread *eye, const Ray *ray, double length, const Interiors *inside);

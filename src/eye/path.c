@@ -5,7 +5,7 @@
  * off and the direct light on it, and goes on in one direction, chosen by how much of the light
  * comes from there; what it finds counts for the inverse of the chance it had.  The mean over
  * paths is then the light itself, but for reflection exponents: they bend what one path sees,
- * and the mean of powers is not the power of the mean.
+ * and the mean of powers is not the power of the mean.  Media are in path_media.c.
  *
  * Light that comes straight from a light is direct light, by a shadow ray.  Light that comes over
  * mirrors and lenses, where shadow rays are blocked, is found by a path that happens to meet the
@@ -13,52 +13,21 @@
  * squeezed by the square of their ior, except between the eye and the first diffuse surface,
  * where the language does not: so the light on a surface under water is what photons bring.
  * SPDX-License-Identifier: Apache-2.0 */
-#include "eye/air_int.h"
+#include "eye/path_int.h"
 
 #include "base/work.h"
 #include "math/sample.h"
 
 enum {
-    PATH_SURFACES_MAX = 10000, /* a guard; few paths come near it */
-    ROULETTE_FROM = 4,         /* surfaces passed before a path of little weight may be ended */
-    LONG_PATH = 64,            /* surfaces passed before any path may be */
-    ROOTS_MAX = 16             /* reflections with an exponent; more are taken to have none */
+    PATH_TURNS_MAX = 10000, /* a guard; few paths come near it */
+    ROULETTE_FROM = 4,      /* turns after which a path of little weight may be ended */
+    LONG_PATH = 200         /* turns after which any path may be */
 };
 
-/* The chance of a long path at each surface: mirrors that lose nothing would keep it for ever. */
-#define LONG_CHANCE 0.95f
-
-/* A reflection whose light is bent by an exponent once the rest of the path is known. */
-typedef struct Root {
-    Radiance before; /* found before it */
-    Rgb weight;
-    float exponent;
-} Root;
-
-/* A path on its way. */
-typedef struct Path {
-    Ray ray;
-    RayKind kind;
-    Interiors inside;
-    Rgb weight;       /* of what is met from here on */
-    Rgb shine;        /* of lights met: the same with the highlights of the surface the eye sees */
-    float transmit;   /* the weight of a picture behind everything */
-    int surfaces;     /* met */
-    int diffuse;      /* diffuse ones that it left */
-    double length;    /* gone since it left the last of them, up to the last surface */
-    bool is_mirrored; /* the background it sees is opaque */
-    bool is_shadowed; /* since then it went where shadow rays do not */
-    int root_count;
-    Root roots[ROOTS_MAX];
-} Path;
+/* The chance of a long path at each turn: mirrors that lose nothing would keep it for ever. */
+#define LONG_CHANCE 0.98f
 
 /* --- what a path finds -------------------------------------------------------------------- */
-
-static void weigh(Path *path, Rgb factor)
-{
-    path->weight = rgb_mul(path->weight, factor);
-    path->shine = rgb_mul(path->shine, factor);
-}
 
 /* Add the lights met before t that no shadow ray has brought. */
 static void add_met_lights(EyeThread *eye, const Path *path, double t, Radiance *out)
@@ -80,27 +49,11 @@ static void add_met_lights(EyeThread *eye, const Path *path, double t, Radiance 
     }
 }
 
-static LightPart part_of(const Path *path)
-{
-    return path->diffuse == 0 ? PART_DIRECT : PART_INDIRECT;
-}
-
-/* What lies before what the path meets at `length`.  Light is scattered once: what media scatter
- * more than once is not in the picture. */
-static void add_air(EyeThread *eye, Path *path, double length, Radiance *out)
-{
-    Veil veil;
-    air_along(eye, &path->ray, length, &path->inside, path->diffuse > 0, &veil);
-    add_part(out, part_of(path), path->weight, veil.light[PART_DIRECT]);
-    weigh(path, veil.through);
-    path->transmit *= rgb_grey(veil.through);
-}
-
 static void add_sky(const EyeThread *eye, const Path *path, Radiance *out)
 {
     float behind;
     Rgb sky = sky_light(eye, path->ray.d, path->is_mirrored, &behind);
-    add_part(out, part_of(path), path->weight, sky);
+    add_part(out, path_part(path), path->weight, sky);
     out->transmit = path->transmit * behind;
 }
 
@@ -110,7 +63,7 @@ static void add_surface(EyeThread *eye, const Path *path, const SurfaceSample *s
     Rgb light = surface_glow(eye->trace.tracer, s);
     if (plan_has(eye->plan, FEATURE_LIGHTS))
         light = rgb_add(light, direct_light(eye, s, path->diffuse == 0));
-    add_part(out, part_of(path), path->weight, light);
+    add_part(out, path_part(path), path->weight, light);
 }
 
 /* --- where it goes on --------------------------------------------------------------------- */
@@ -146,7 +99,7 @@ static void set_odds(const EyeThread *eye, const SurfaceSample *s, Odds *out)
 /* What a choice of probability p makes of the share it is for. */
 static void take(Path *path, Rgb share, float p)
 {
-    weigh(path, rgb_scale(share, 1 / p));
+    path_weigh(path, rgb_scale(share, 1 / p));
 }
 
 /* Do shadow rays stop at one of the surfaces that were hit? */
@@ -168,7 +121,7 @@ static bool go_through(EyeThread *eye, Path *path, const Hit *hit, const Surface
         if (!surface_sample_wave(&eye->trace, &path->ray, hit, &path->inside,
                                  sample_1d(eye->path.index, eye->path.wave), &wave, &color))
             return false;
-        weigh(path, color);
+        path_weigh(path, color);
         path->transmit *= rgb_grey(color);
         s = &wave;
     }
@@ -183,7 +136,7 @@ static bool go_through(EyeThread *eye, Path *path, const Hit *hit, const Surface
         path->inside = s->inside_after;
         path->is_shadowed = path->is_shadowed || stops_shadow_rays(eye, hit);
         if (path->diffuse > 0)
-            weigh(path, rgb_gray((float)(s->ior_ratio * s->ior_ratio)));
+            path_weigh(path, rgb_gray((float)(s->ior_ratio * s->ior_ratio)));
     }
     if (path->diffuse == 0)
         path->kind = path->is_mirrored ? RAY_REFLECTED : RAY_REFRACTED;
@@ -248,8 +201,7 @@ static bool bounce(EyeThread *eye, Path *path, const SurfaceSample *s, float p)
 /* The first choice of a pixel's paths is stratified over them. */
 static double next_choice(EyeThread *eye, const Path *path)
 {
-    return path->surfaces == 1 ? sample_1d(eye->path.index, eye->path.choice)
-                               : rng_double(&eye->rng);
+    return path->turns == 1 ? sample_1d(eye->path.index, eye->path.choice) : rng_double(&eye->rng);
 }
 
 /* Go on from a surface; returns false if the path ends there. */
@@ -277,14 +229,14 @@ static bool leave(EyeThread *eye, Path *path, const Hit *hit, const SurfaceSampl
 static bool survives(EyeThread *eye, Path *path)
 {
     float most = fmaxf(rgb_max_abs(path->weight), rgb_max_abs(path->shine));
-    float chance = path->surfaces < ROULETTE_FROM ? 1 : most;
-    if (path->surfaces >= LONG_PATH)
+    float chance = path->turns < ROULETTE_FROM ? 1 : most;
+    if (path->turns >= LONG_PATH)
         chance = fminf(chance, LONG_CHANCE);
     if (chance >= 1)
         return most > 0;
     if (!(rng_double(&eye->rng) < (double)chance))
         return false;
-    weigh(path, rgb_gray(1 / chance));
+    path_weigh(path, rgb_gray(1 / chance));
     return true;
 }
 
@@ -314,26 +266,34 @@ void path_radiance(EyeThread *eye, const Ray *ray, const Interiors *interiors, R
                  .transmit = 1};
     *out = (Radiance){.transmit = 0};
     bool goes_on = true;
-    while (goes_on && path.surfaces < PATH_SURFACES_MAX && !work_interrupted) {
+    while (goes_on && path.turns < PATH_TURNS_MAX && !work_interrupted) {
         Hit hit;
         SurfaceSample s;
+        eye->trace.is_dimmed = path.diffuse > 0;
         bool is_hit = trace_closest(&eye->trace, &path.ray, path.kind, &hit);
-        add_met_lights(eye, &path, is_hit ? hit.t : INFINITY, out);
-        if (eye->has_air)
-            add_air(eye, &path, is_hit ? hit.t : INFINITY, out);
+        double length = is_hit ? hit.t : INFINITY;
+        if (is_hit && path.turns == 0) {
+            surface_sample(&eye->trace, &path.ray, &hit, &path.inside, &s);
+            describe_first(&hit, &s, first);
+        }
+        add_met_lights(eye, &path, length, out);
+        if (eye->has_air && path_cross_air(eye, &path, length, out)) {
+            goes_on = survives(eye, &path);
+            continue;
+        }
         if (!is_hit) {
             add_sky(eye, &path, out);
             break;
         }
-        weigh(&path, interiors_fade(&path.inside, hit.t));
+        path_weigh(&path, interiors_fade(&path.inside, hit.t));
         path.length += hit.t;
-        surface_sample(&eye->trace, &path.ray, &hit, &path.inside, &s);
-        if (path.surfaces++ == 0)
-            describe_first(&hit, &s, first);
+        if (path.turns++ > 0)
+            surface_sample(&eye->trace, &path.ray, &hit, &path.inside, &s);
         add_surface(eye, &path, &s, out);
         goes_on = leave(eye, &path, &hit, &s, out) && survives(eye, &path);
     }
-    if (goes_on && path.surfaces == PATH_SURFACES_MAX)
+    eye->trace.is_dimmed = false;
+    if (goes_on && path.turns == PATH_TURNS_MAX)
         eye->trace.stats.count[STAT_TRACE_LIMIT]++;
     take_roots(&path, out);
 }

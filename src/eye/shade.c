@@ -168,7 +168,7 @@ static void add_surface(EyeThread *eye, const Path *path, const SurfaceSample *s
 static void add_air(EyeThread *eye, Path *path, double length, Radiance *out)
 {
     Veil veil;
-    air_along(eye, &path->ray, length, &path->inside, false, &veil);
+    air_along(eye, &path->ray, length, &path->inside, AIR_SEEN, &veil);
     for (int i = 0; i < PART_COUNT; i++)
         add_part(out, (LightPart)i, path->through, veil.light[i]);
     path->through = rgb_mul(path->through, veil.through);

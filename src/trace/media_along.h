@@ -133,7 +133,8 @@ const Medium *media_choose(const MediaHere *here, V3 p, Rgb light, Rng *rng, Rgb
 Rgb media_shadow(TraceThread *thread, const Ray *ray, bool is_to_light);
 
 /* Return what of light `light` (index) passes fog and atmosphere on its way to p, from `distance`
- * scene units away in unit direction `to`: all, unless the light dims in media. */
+ * scene units away in unit direction `to`: all, unless the light dims in media.  Photons do not see
+ * fog, so it takes nothing from light that is dimmed as they are. */
 Rgb media_air_shadow(TraceThread *thread, V3 p, V3 to, double distance, int light);
 
 #endif

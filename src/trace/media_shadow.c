@@ -92,10 +92,11 @@ Rgb media_air_shadow(TraceThread *thread, V3 p, V3 to, double distance, int ligh
 {
     const Tracer *tracer = thread->tracer;
     const Light *source = &tracer->scene->lights[light];
-    if (!source->is_dimmed_by_media || !source->lights_media || !(distance > 0))
+    bool is_dimmed = source->is_dimmed_by_media && source->lights_media;
+    if (!(is_dimmed || thread->is_dimmed) || !(distance > 0))
         return RGB_WHITE;
     Rgb passed = RGB_WHITE;
-    if (plan_has(tracer->plan, FEATURE_FOG))
+    if (is_dimmed && plan_has(tracer->plan, FEATURE_FOG))
         passed = fog_shadow(tracer->scene, p, to, distance);
     if (!plan_has(tracer->plan, FEATURE_MEDIA))
         return passed;

@@ -325,9 +325,9 @@ Rgb trace_shadow_of(TraceThread *thread, const ShadowBundle *bundle, const Shape
         thread->stats.count[STAT_SHADOW_FILTER_WALKS]++;
         passed = walk_filters(&query, &ray);
     }
+    bool is_dimmed = thread->is_dimmed || (query.light && query.light->is_dimmed_by_media);
     if (thread->tracer->media_count > 0 && !rgb_is_black(passed))
-        passed = rgb_mul(
-            passed, media_shadow(thread, &ray, query.light && query.light->is_dimmed_by_media));
+        passed = rgb_mul(passed, media_shadow(thread, &ray, is_dimmed));
     return passed;
 }
 

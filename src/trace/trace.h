@@ -28,6 +28,8 @@ typedef struct TraceThread {
     Arena *scratch;     /* reset by the pass after each sample or photon */
     uint32_t *blockers; /* per light: the object that blocked its last shadow ray, or none */
     Rng media_rng;      /* of the sample or photon at hand: where media are looked at */
+    bool is_dimmed;     /* all lights dim in media, as photons do: what shadow rays find will be
+                           reflected or scattered again */
     Stats stats;
 } TraceThread;
 Status trace_thread_init(TraceThread *thread, const Tracer *tracer, Diag *diag);

@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "lit_scene.h"
+#include "slab_walk.h"
 
 #include "eye/eye.h"
 #include "texture/media.h"
@@ -135,30 +136,6 @@ static void a_pane_of_ior_1_changes_nothing(void **state)
 }
 
 /* --- what is scattered more than once ------------------------------------------------------- */
-
-/* A slab lit along its normal, seen along it, scattering evenly: the light scattered more than once
- * that comes back, by walks that send to the eye at every turn but the first. */
-static double slab_walk(double depth, double albedo, int walks, double *error)
-{
-    double sum = 0, squares = 0;
-    for (int i = 0; i < walks; i++) {
-        Rng rng = rng_at(23, 0, (uint64_t)i);
-        double z = 0, mu = 1, weight = 1, got = 0;
-        for (int turn = 0; turn < 1000; turn++) {
-            z += -log1p(-rng_double(&rng)) * mu;
-            if (!(z > 0 && z < depth))
-                break;
-            weight *= albedo;
-            if (turn > 0)
-                got += weight * exp(-z);
-            mu = 2 * rng_double(&rng) - 1;
-        }
-        sum += got / walks;
-        squares += got * got / walks;
-    }
-    *error = sqrt((squares - sum * sum) / walks);
-    return sum;
-}
 
 /* In units of light without pi, scattering 1/4 with extinction 4 is physical: what comes back of
  * irradiance 1 is (1/4) of what the walk sends per unit of depth. */
