@@ -18,6 +18,7 @@ static EyeLight eye_light(const EyeThread *eye, int index)
     /* In one of many passes an empty map is one by chance: the light it stands for must not come
      * straight instead. */
     bool has_caustics = eye->options.caustic || eye->options.is_progressive;
+    bool has_volume = eye->options.volume || eye->options.is_progressive;
     return (EyeLight){
         .light = light,
         .index = index,
@@ -27,8 +28,8 @@ static EyeLight eye_light(const EyeThread *eye, int index)
         .makes_caustics = plan->light_makes_caustics[index] && has_caustics &&
                           light->photon_refraction != TRI_OFF,
         .lights_media = light->lights_media && !light->is_shadowless,
-        .makes_volume = plan->light_makes_caustics[index] && plan->has_volume_focus &&
-                        eye->options.volume && light->photon_refraction != TRI_OFF,
+        .makes_volume = plan->light_makes_caustics[index] && plan->has_volume_focus && has_volume &&
+                        light->photon_refraction != TRI_OFF,
     };
 }
 

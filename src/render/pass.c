@@ -92,8 +92,8 @@ static void set_limits(Pass *pass)
     }
 }
 
-/* Make photons in media be found by rays.  In one pass of many all balls are alike; as they shrink
- * in three dimensions, and those of surfaces in two, they shrink less. */
+/* Make photons in media be found by rays.  In one pass of many all balls are alike.  Rays see them
+ * as disks, so they shrink as the disks on surfaces do. */
 static Status make_volume(Pass *pass)
 {
     const PhotonMap *map = pass->maps.volume;
@@ -105,7 +105,7 @@ static Status make_volume(Pass *pass)
     if (series) {
         if (series->first->volume == 0)
             series->first->volume = radius > 0 ? radius : volume_radius(map, VOLUME_PHOTONS);
-        radius = series->first->volume * pow(series->shrink, 2.0 / 3);
+        radius = series->first->volume * series->shrink;
     }
     return volume_index_new(map, VOLUME_PHOTONS, radius, threads, pass->diag, &pass->volume);
 }

@@ -4,7 +4,8 @@
  * r^2 is multiplied by (i + a) / (i + 1), so that it falls as i^(a-1).  The variance of a pass goes
  * as 1/r^2, that of the mean of n passes as the sum of 1/r^2 over n^2, which is n^-a; the blur goes
  * as r^2, and its mean as n^(a-1).  Square of the blur and variance fall alike with 2 (1 - a) = a:
- * a is 2/3, and the error squared falls as n^(-2/3).  No statistics are kept at the points that are
+ * a is 2/3, and the error squared falls as n^(-2/3).  Photons in media are disks across the rays
+ * that find them, so the same holds for them.  No statistics are kept at the points that are
  * looked at, so passes need not look at the same ones: each samples pixels and lenses anew.
  *
  * Everything random is a function of seed and pass, and sums are kept in double precision between
@@ -64,8 +65,7 @@ double progressive_shrink(uint64_t pass)
 
 static PassRadii scaled(PassRadii radii, double factor)
 {
-    return (PassRadii){radii.caustic * factor, radii.global * factor,
-                       radii.volume * pow(factor, 2.0 / 3)};
+    return (PassRadii){radii.caustic * factor, radii.global * factor, radii.volume * factor};
 }
 
 /* --- progress ------------------------------------------------------------------------------- */

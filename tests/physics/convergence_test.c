@@ -11,6 +11,7 @@
 
 #include "render/render.h"
 #include "sdl/sdl.h"
+#include "trace/trace.h"
 
 #include "sphere_fan.h"
 #include "table.h"
@@ -258,13 +259,40 @@ static void split_error(const Series *series, int level, const double truth[PIXE
     *blur = fmax(mean_square(bias, truth) - *noise / seeds, 1e-12);
 }
 
+/* Render a scene and fit how its error falls, over the pixels whose truth is not 0. */
+static void check_fall(const char *what, const char *text, LayerBit layer,
+                       const double truth[PIXELS], int levels)
+{
+    int seeds = 8, first = 2;
+    double noise[LEVELS_MAX], blur[LEVELS_MAX], error;
+    Series series = run_series(text, layer, seeds, levels);
+    for (int level = 0; level < levels; level++) {
+        split_error(&series, level, truth, &noise[level], &blur[level]);
+        double mse = 0;
+        for (int seed = 0; seed < seeds; seed++)
+            mse += error_of_seed(&series, seed, level, truth) / seeds;
+        print_message("# %4d passes: relative error squared %.3g, noise %.3g, blur %.3g\n",
+                      1 << level, mse, noise[level], blur[level]);
+    }
+    double slope = slope_of_seeds(&series, truth, first, &error);
+    table_row(what, slope, -2.0 / 3, error);
+    double of_noise = fit_slope(noise, first, levels);
+    print_message("# slope of noise %.3f, of blur %.3f\n", of_noise,
+                  fit_slope(blur, first, levels));
+    assert_true(slope < -2.0 / 3 + 4 * error);
+    /* Noise that falls faster is bought by blur that falls more slowly. */
+    assert_true(slope > -2.0 / 3 - 4 * error - 0.05);
+    assert_true(fabs(of_noise + 2.0 / 3) < 0.12);
+    assert_true(error < 0.05);
+    free(series.pictures);
+}
+
 static void the_error_of_a_caustic_falls(void **state)
 {
     (void)state;
     bool is_long = table_is_long();
-    int seeds = 8, levels = is_long ? 10 : 8, first = 2;
     char text[1024];
-    double truth[PIXELS], noise[LEVELS_MAX], blur[LEVELS_MAX], error;
+    double truth[PIXELS];
     fill_truth(truth);
     snprintf(
         text, sizeof text,
@@ -277,24 +305,46 @@ static void the_error_of_a_caustic_falls(void **state)
         "sphere { <0,1.5,0>, 1 pigment { rgbt 1 } finish { ambient 0 diffuse 0 }\n"
         "  interior { ior 1.5 } photons { target refraction on reflection off collect off } }\n",
         is_long ? 20000 : 1000, is_long ? 0.3 : 0.25, 2 * HALF, 2 * HALF);
-    Series series = run_series(text, LAYER_CAUSTIC, seeds, levels);
-    for (int level = 0; level < levels; level++) {
-        split_error(&series, level, truth, &noise[level], &blur[level]);
-        double mse = 0;
-        for (int seed = 0; seed < seeds; seed++)
-            mse += error_of_seed(&series, seed, level, truth) / seeds;
-        print_message("# %4d passes: relative error squared %.3g, noise %.3g, blur %.3g\n",
-                      1 << level, mse, noise[level], blur[level]);
+    check_fall("caustic of a ball: slope of error squared over passes", text, LAYER_CAUSTIC, truth,
+               is_long ? 10 : 8);
+}
+
+/* A beam with soft sides in thin smoke, through a pane that bends nothing: what a ray sees is the
+ * light along it times the scattering. */
+static void the_error_in_smoke_falls(void **state)
+{
+    (void)state;
+    enum { STEPS = 4000 };
+    bool is_long = table_is_long();
+    const double wide = 1.2, smoke = 0.01, step = 2 * HALF / SIDE;
+    char text[1024];
+    double truth[PIXELS];
+    Light light = {.kind = LIGHT_CYLINDER,
+                   .location = {0, 4, 0},
+                   .direction = {0, -1, 0},
+                   .color = {1, 1, 1},
+                   .falloff = wide};
+    for (int i = 0; i < PIXELS; i++) {
+        double left = (i % SIDE - SIDE / 2) * step, sum = 0;
+        for (int k = 0; k < STEPS && fabs(left + step / 2) < 0.7 * wide; k++) {
+            V3 p = {left + (k % 16 + 0.5) / 16 * step, 0, wide * (2 * (k + 0.5) / STEPS - 1)};
+            sum += (double)light_at(&light, light.location, p).color.g / STEPS;
+        }
+        truth[i] = 2 * wide * smoke * sum;
     }
-    double slope = slope_of_seeds(&series, truth, first, &error);
-    table_row("caustic of a ball: slope of error squared over passes", slope, -2.0 / 3, error);
-    print_message("# slope of noise %.3f, of blur %.3f\n", fit_slope(noise, first, levels),
-                  fit_slope(blur, first, levels));
-    assert_true(slope < -2.0 / 3 + 4 * error);
-    /* Noise that falls faster is bought by blur that falls more slowly. */
-    assert_true(slope > -2.0 / 3 - 4 * error - 0.05);
-    assert_true(error < 0.05);
-    free(series.pictures);
+    snprintf(text, sizeof text,
+             "#version 3.7;\n"
+             "global_settings { assumed_gamma 1\n"
+             "  photons { count %d media 1 radius 0.1, 1, %g } }\n"
+             "camera { orthographic location <0,0,-5> direction z right %g*x up %g*y }\n"
+             "light_source { <0,4,0> rgb 1 cylinder point_at 0 radius 0 falloff %g tightness 0 }\n"
+             "media { scattering { 1, %g extinction 0 } }\n"
+             "plane { y, -3 pigment { rgb 1 } finish { ambient 0 } }\n"
+             "box { <-2,2,-2>, <2,2.1,2> pigment { rgbt 1 } finish { ambient 0 diffuse 0 } hollow\n"
+             "  interior { ior 1 } photons { target refraction on collect off } }\n",
+             is_long ? 6000 : 2000, is_long ? 0.3 : 0.4, 2 * HALF, 2 * HALF, wide, smoke);
+    check_fall("beam in smoke: slope of error squared over passes", text, LAYER_CAUSTIC, truth,
+               is_long ? 9 : 7);
 }
 
 int main(void)
@@ -303,6 +353,7 @@ int main(void)
         cmocka_unit_test(even_light_is_right_from_the_first_pass),
         cmocka_unit_test(a_closed_sphere_is_evenly_lit),
         cmocka_unit_test(the_error_of_a_caustic_falls),
+        cmocka_unit_test(the_error_in_smoke_falls),
     };
     return cmocka_run_group_tests_name("convergence", tests, NULL, NULL);
 }
