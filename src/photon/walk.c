@@ -174,14 +174,25 @@ static int most_diffuse(const Walk *walk)
     return walk->rules->max_diffuse - (walk->beam->light == NULL);
 }
 
-static bool is_kept(const Walk *walk, const Hit *hit, Rgb diffuse)
+/* Is a photon kept where a surface scatters diffusely? */
+static bool is_kept(const Walk *walk, const Hit *hit)
 {
-    if (rgb_is_black(diffuse))
-        return false;
     if (walk->rules->map == MAP_GLOBAL)
         return (walk->is_diffuse || walk->rules->keeps_first || !walk->beam->light) &&
                walk->diffuse <= most_diffuse(walk);
     return walk->rules->map == MAP_CAUSTIC && walk->is_specular && is_collecting(walk, hit);
+}
+
+/* Keep the photon where it hits a surface. */
+static void keep(Walk *walk, const Hit *hit, float least, PhotonList *out, WalkResult *result)
+{
+    Rgb power = rgb_mul(flux_here(walk), walk->weight);
+    bool is_inside = v3_dot(hit->point.ng, walk->ray.d) > 0;
+    V3 ng = is_inside ? v3_neg(hit->point.ng) : hit->point.ng;
+    unsigned normal = (unsigned)normal14_encode(ng) << 2;
+    if (store(walk, hit->point.p, v3_neg(walk->ray.d), normal, power, least, out) &&
+        result->stored++ == 0)
+        result->left = power;
 }
 
 /* --- the way ---------------------------------------------------------------------------- */
@@ -351,7 +362,7 @@ typedef enum Step { STEP_END, STEP_SURFACE, STEP_SCATTERED } Step;
 
 /* Go to the next surface, or to where a medium scatters the photon.  `end` is set to the end of the
  * path when there is none to go on from. */
-static Step advance(Walk *walk, Hit *hit, SurfaceSample *s, PhotonList *out, WalkResult *result)
+static Step advance(Walk *walk, Hit *hit, PhotonList *out, WalkResult *result)
 {
     RayKind kind = map_is_aimed(walk->rules->map) ? RAY_PHOTON : RAY_LIGHT;
     bool is_hit = trace_closest(walk->thread, &walk->ray, kind, hit);
@@ -374,7 +385,6 @@ static Step advance(Walk *walk, Hit *hit, SurfaceSample *s, PhotonList *out, Wal
     }
     if (!walk->is_straight)
         walk->level++;
-    surface_sample(walk->thread, &walk->ray, hit, &walk->inside, s);
     walk->weight = rgb_mul(walk->weight, interiors_fade(&walk->inside, hit->t));
     return STEP_SURFACE;
 }
@@ -392,6 +402,28 @@ static bool is_beyond_reach(const Walk *walk, const SurfaceSample *s)
            v3_dist(s->at.p, walk->rules->center) > walk->rules->reach;
 }
 
+static bool passes_through(const Walk *walk, const Hit *hit)
+{
+    return hit->surface->photons.is_pass_through && map_is_aimed(walk->rules->map);
+}
+
+/* Does the path end here, whatever the surface looks like? */
+static bool is_last(const Walk *walk, const Hit *hit)
+{
+    return map_is_aimed(walk->rules->map) && hit->surface->is_matt && hit->tie_count == 0 &&
+           !hit->surface->photons.is_pass_through;
+}
+
+/* Meet a surface where the path ends. */
+static void end_on_surface(Walk *walk, const Hit *hit, float least, PhotonList *out,
+                           WalkResult *result)
+{
+    if (is_kept(walk, hit))
+        keep(walk, hit, least, out, result);
+    result->end = PATH_ABSORBED;
+    walk->weight = RGB_BLACK;
+}
+
 /* Store what is to be stored and throw the dice; returns false when the path ends here. */
 static bool meet_surface(Walk *walk, const Hit *hit, const SurfaceSample *s, float least,
                          PhotonList *out, WalkResult *result)
@@ -401,12 +433,8 @@ static bool meet_surface(Walk *walk, const Hit *hit, const SurfaceSample *s, flo
         result->end = PATH_CUT;
         return false;
     }
-    if (is_kept(walk, hit, diffuse)) {
-        Rgb power = rgb_mul(flux_here(walk), walk->weight);
-        unsigned normal = (unsigned)normal14_encode(s->ng) << 2;
-        if (store(walk, s->at.p, s->wo, normal, power, least, out) && result->stored++ == 0)
-            result->left = power;
-    }
+    if (!rgb_is_black(diffuse) && is_kept(walk, hit))
+        keep(walk, hit, least, out, result);
     Roulette roulette;
     set_roulette(walk, s, diffuse, &roulette);
     if (!follow(walk, hit, s, &roulette, spin(walk, &roulette))) {
@@ -434,12 +462,17 @@ void photon_walk(TraceThread *thread, const WalkRules *rules, const Beam *beam,
     for (int surfaces = 0; surfaces < PATH_SURFACES_MAX; surfaces++) {
         Hit hit;
         SurfaceSample s;
-        Step step = advance(&walk, &hit, &s, out, result);
+        Step step = advance(&walk, &hit, out, result);
         if (step == STEP_END || (step == STEP_SCATTERED && is_over_limit(&walk)))
             break;
         if (step == STEP_SCATTERED)
             continue;
-        if (s.surface->photons.is_pass_through && map_is_aimed(rules->map)) {
+        if (is_last(&walk, &hit)) {
+            end_on_surface(&walk, &hit, least, out, result);
+            break;
+        }
+        surface_sample(thread, &walk.ray, &hit, &walk.inside, &s);
+        if (passes_through(&walk, &hit)) {
             pass_through(&walk, &s);
             if (is_over_limit(&walk))
                 break;
@@ -472,16 +505,17 @@ Rgb photon_scout(TraceThread *thread, const WalkRules *rules, const Beam *beam,
     for (int surfaces = 0; surfaces < PATH_SURFACES_MAX; surfaces++) {
         Hit hit;
         SurfaceSample s;
-        Step step = advance(&walk, &hit, &s, NULL, &none);
+        Step step = advance(&walk, &hit, NULL, &none);
         if (step == STEP_SCATTERED) {
             found = rgb_mul(flux_here(&walk), walk.weight);
             *at = walk.ray.o;
         }
-        if (step != STEP_SURFACE)
+        if (step != STEP_SURFACE || is_last(&walk, &hit))
             break;
+        surface_sample(thread, &walk.ray, &hit, &walk.inside, &s);
         Rgb diffuse = not_negative(surface_diffuse(&s));
         Roulette roulette;
-        if (map_is_aimed(rules->map) && s.surface->photons.is_pass_through) {
+        if (passes_through(&walk, &hit)) {
             pass_through(&walk, &s);
             if (is_over_limit(&walk))
                 break;

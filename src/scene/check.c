@@ -110,8 +110,8 @@ static bool mark_specular_targets(Scene *scene)
     for (uint32_t i = 0; i < scene->surface_count; i++) {
         Surface *s = &scene->surfaces[i];
         bool reflects = s->may_reflect && s->photons.reflection != TRI_OFF;
-        bool transmits = s->may_transmit && s->photons.refraction != TRI_OFF &&
-                         !s->photons.is_pass_through;
+        bool transmits =
+            s->may_transmit && s->photons.refraction != TRI_OFF && !s->photons.is_pass_through;
         bool refracts = transmits && interior_bends(s->interior);
         if (transmits) /* photons on their way: a bubble in glass, a film behind it */
             s->photons.refraction = TRI_ON;
@@ -230,6 +230,7 @@ Status scene_check(Scene *scene, Diag *diag)
         Surface *s = &scene->surfaces[i];
         s->may_transmit = surface_has(s, texture_may_transmit);
         s->may_reflect = surface_has(s, texture_may_reflect);
+        s->is_matt = !s->may_transmit && !s->may_reflect && surface_has(s, texture_may_scatter);
         s->is_filter = only_filters(s);
         s->is_target = false;
     }

@@ -37,6 +37,8 @@ typedef struct Surface {
     bool no_shadow, no_image, no_reflection, no_radiosity;
     bool is_double_illuminated, is_hollow;
     bool may_transmit, may_reflect; /* some light passes / is reflected: set by scene_check */
+    bool is_matt;                 /* all it does with light is to scatter it diffusely: set by
+                                     scene_check */
     bool is_filter;               /* what passes goes straight on and loses what the pigment takes,
                                      nothing else: set by scene_check */
     bool is_target;               /* photons are sent at it: set by scene_check */

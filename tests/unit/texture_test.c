@@ -99,6 +99,12 @@ static void test_may_transmit(void **state)
     assert_true(texture_may_transmit(&(Texture){.layers = layers + 1, .layer_count = 2}));
     assert_false(texture_may_reflect(&(Texture){.layers = layers, .layer_count = 2}));
     assert_true(texture_may_reflect(&(Texture){.layers = layers, .layer_count = 3}));
+    const Pigment black = {.is_solid = true, .color = {0, 0, 0, 0, 0}};
+    Finish dark = dull;
+    dark.diffuse = 0;
+    const Layer few[] = {{&black, &dull}, {&matte, &dark}, {&ramp, &dull}};
+    assert_false(texture_may_scatter(&(Texture){.layers = few, .layer_count = 2}));
+    assert_true(texture_may_scatter(&(Texture){.layers = few, .layer_count = 3}));
 }
 
 static void test_fade(void **state)
