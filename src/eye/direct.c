@@ -113,18 +113,29 @@ static Rgb directional_caustic(EyeThread *eye, const SurfaceSample *s)
     return sum;
 }
 
-/* Light of a map that a diffuse surface sends on in all directions alike. */
+/* Light of a map on the side of n, of which a surface sends on a part in all directions alike. */
+static Rgb side_gather(EyeThread *eye, const PhotonMap *map, const GatherLimits *limits, V3 p, V3 n,
+                       Rgb part)
+{
+    if (rgb_is_black(part))
+        return RGB_BLACK;
+    Rgb irradiance;
+    int count = photon_gather(map, p, n, limits, eye->gather, &irradiance);
+    eye->trace.stats.count[STAT_GATHERS]++;
+    eye->trace.stats.count[STAT_GATHERED] += (uint64_t)count;
+    return rgb_mul(irradiance, part);
+}
+
 static Rgb diffuse_gather(EyeThread *eye, const PhotonMap *map, const GatherLimits *limits,
                           const SurfaceSample *s)
 {
-    Rgb reflectance = surface_diffuse(s);
-    if (rgb_is_black(reflectance))
-        return RGB_BLACK;
-    Rgb irradiance;
-    int count = photon_gather(map, s->at.p, s->ng, limits, eye->gather, &irradiance);
-    eye->trace.stats.count[STAT_GATHERS]++;
-    eye->trace.stats.count[STAT_GATHERED] += (uint64_t)count;
-    return rgb_mul(irradiance, reflectance);
+    return side_gather(eye, map, limits, s->at.p, s->ng, surface_diffuse(s));
+}
+
+static Rgb back_gather(EyeThread *eye, const PhotonMap *map, const GatherLimits *limits,
+                       const SurfaceSample *s)
+{
+    return side_gather(eye, map, limits, s->at.p, v3_neg(s->ng), surface_diffuse_back(s));
 }
 
 Rgb caustic_light(EyeThread *eye, const SurfaceSample *s)
@@ -133,16 +144,20 @@ Rgb caustic_light(EyeThread *eye, const SurfaceSample *s)
     if (!options->caustic || !s->surface->photons.is_collecting ||
         !photon_reach_has(options->caustic_reach, s->at.p))
         return RGB_BLACK;
+    const GatherLimits *limits = &options->caustic_limits;
+    Rgb behind = back_gather(eye, options->caustic, limits, s);
     if (!is_directional(s))
-        return diffuse_gather(eye, options->caustic, &options->caustic_limits, s);
+        return rgb_add(behind, diffuse_gather(eye, options->caustic, limits, s));
     eye->trace.stats.count[STAT_GATHERS]++;
-    return directional_caustic(eye, s);
+    return rgb_add(behind, directional_caustic(eye, s));
 }
 
 Rgb mapped_light(EyeThread *eye, const SurfaceSample *s)
 {
     const EyeOptions *options = &eye->options;
+    const GatherLimits *limits = &options->global_limits;
+    Rgb behind = back_gather(eye, options->global, limits, s);
     if (surface_has_brilliance(s))
-        return brilliant_gather(eye, options->global, &options->global_limits, s);
-    return diffuse_gather(eye, options->global, &options->global_limits, s);
+        return rgb_add(behind, brilliant_gather(eye, options->global, limits, s));
+    return rgb_add(behind, diffuse_gather(eye, options->global, limits, s));
 }

@@ -31,12 +31,18 @@ typedef struct Walk {
     Rng *rng;
 } Walk;
 
-typedef enum Branch { BRANCH_ABSORB, BRANCH_DIFFUSE, BRANCH_REFLECT, BRANCH_TRANSMIT } Branch;
+typedef enum Branch {
+    BRANCH_ABSORB,
+    BRANCH_DIFFUSE,
+    BRANCH_BACK, /* diffusely to the other side */
+    BRANCH_REFLECT,
+    BRANCH_TRANSMIT
+} Branch;
 
 /* What a surface does with light, each channel, and how likely each branch is. */
 typedef struct Roulette {
-    Rgb diffuse, reflect, transmit;
-    double p_diffuse, p_reflect, p_transmit;
+    Rgb diffuse, back, reflect, transmit;
+    double p_diffuse, p_back, p_reflect, p_transmit;
     V3 reflect_dir;
 } Roulette;
 
@@ -68,21 +74,23 @@ static bool may_refract(const Walk *walk, const Surface *surface)
     return !map_is_aimed(walk->rules->map) || plan_photons_refract(walk->beam->light, surface);
 }
 
-/* The probabilities of the three branches: that of going on at all is the largest channel of
+/* The probabilities of the branches: that of going on at all is the largest channel of
  * all that is sent on, and it is shared in proportion to what each branch sends. */
 static void set_odds(Roulette *r)
 {
-    Rgb all = rgb_add(r->diffuse, rgb_add(r->reflect, r->transmit));
+    Rgb all = rgb_add(rgb_add(r->diffuse, r->back), rgb_add(r->reflect, r->transmit));
     double sum = (double)rgb_sum(all), most = fmin(1, (double)rgb_max(all));
     double scale = sum > 0 ? most / sum : 0;
     r->p_diffuse = scale * (double)rgb_sum(r->diffuse);
+    r->p_back = scale * (double)rgb_sum(r->back);
     r->p_reflect = scale * (double)rgb_sum(r->reflect);
     r->p_transmit = scale * (double)rgb_sum(r->transmit);
 }
 
-static void set_roulette(const Walk *walk, const SurfaceSample *s, Rgb diffuse, Roulette *out)
+static void set_roulette(const Walk *walk, const SurfaceSample *s, Roulette *out)
 {
-    *out = (Roulette){.diffuse = diffuse};
+    *out = (Roulette){.diffuse = not_negative(surface_diffuse_from(s, s->wo)),
+                      .back = not_negative(surface_diffuse_back(s))};
     if (s->has_transmission && may_refract(walk, s->surface))
         out->transmit = s->is_total_reflection ? RGB_WHITE : not_negative(s->filter);
     if (may_reflect(walk, s->surface))
@@ -95,6 +103,12 @@ static void set_roulette(const Walk *walk, const SurfaceSample *s, Rgb diffuse, 
             out->reflect = rgb_add(out->reflect, reflect);
         }
     set_odds(out);
+}
+
+/* Is some light scattered diffusely, to either side? */
+static bool is_diffuse(const Roulette *r)
+{
+    return !rgb_is_black(r->diffuse) || !rgb_is_black(r->back);
 }
 
 /* The first choice of the photons of a beam is stratified over them. */
@@ -117,7 +131,10 @@ static Branch spin(Walk *walk, const Roulette *r)
     if (x < r->p_reflect)
         return BRANCH_REFLECT;
     x -= r->p_reflect;
-    return x < r->p_diffuse ? BRANCH_DIFFUSE : BRANCH_ABSORB;
+    if (x < r->p_diffuse)
+        return BRANCH_DIFFUSE;
+    x -= r->p_diffuse;
+    return x < r->p_back ? BRANCH_BACK : BRANCH_ABSORB;
 }
 
 /* --- storing ---------------------------------------------------------------------------- */
@@ -235,14 +252,16 @@ static V3 cosine_direction(Rng *rng)
     }
 }
 
-static void bounce_diffusely(Walk *walk, const SurfaceSample *s)
+/* Leave a surface to the side of n with a share of the light. */
+static void bounce_diffusely(Walk *walk, const SurfaceSample *s, V3 n, Rgb share)
 {
+    walk->weight = rgb_scale(rgb_mul(walk->weight, share), walk->rules->brightness);
     flux_here(walk);
     walk->is_diffuse = true;
     walk->diffuse++;
     if (walk->level < walk->rules->max_level)
         walk->level = 0; /* the limit is for mirrors and glass between; here the dice end it */
-    leave(walk, s, warp_to_frame(cosine_direction(walk->rng), s->ng), false);
+    leave(walk, s, warp_to_frame(cosine_direction(walk->rng), n), false);
 }
 
 /* Go through a surface with a share of the light. */
@@ -292,9 +311,12 @@ static bool follow(Walk *walk, const Hit *hit, const SurfaceSample *s, const Rou
     case BRANCH_DIFFUSE:
         if (map_is_aimed(walk->rules->map))
             return false;
-        walk->weight = rgb_mul(walk->weight, rgb_scale(r->diffuse, (float)(1 / r->p_diffuse)));
-        walk->weight = rgb_scale(walk->weight, walk->rules->brightness);
-        bounce_diffusely(walk, s);
+        bounce_diffusely(walk, s, s->ng, rgb_scale(r->diffuse, (float)(1 / r->p_diffuse)));
+        return true;
+    case BRANCH_BACK:
+        if (map_is_aimed(walk->rules->map))
+            return false;
+        bounce_diffusely(walk, s, v3_neg(s->ng), rgb_scale(r->back, (float)(1 / r->p_back)));
         return true;
     case BRANCH_ABSORB:
         break;
@@ -428,15 +450,14 @@ static void end_on_surface(Walk *walk, const Hit *hit, float least, PhotonList *
 static bool meet_surface(Walk *walk, const Hit *hit, const SurfaceSample *s, float least,
                          PhotonList *out, WalkResult *result)
 {
-    Rgb diffuse = not_negative(surface_diffuse_from(s, s->wo));
-    if (!rgb_is_black(diffuse) && is_beyond_reach(walk, s)) {
+    Roulette roulette;
+    set_roulette(walk, s, &roulette);
+    if (is_diffuse(&roulette) && is_beyond_reach(walk, s)) {
         result->end = PATH_CUT;
         return false;
     }
-    if (!rgb_is_black(diffuse) && is_kept(walk, hit))
+    if (is_diffuse(&roulette) && is_kept(walk, hit))
         keep(walk, hit, least, out, result);
-    Roulette roulette;
-    set_roulette(walk, s, diffuse, &roulette);
     if (!follow(walk, hit, s, &roulette, spin(walk, &roulette))) {
         result->end = PATH_ABSORBED;
         walk->weight = RGB_BLACK;
@@ -513,7 +534,6 @@ Rgb photon_scout(TraceThread *thread, const WalkRules *rules, const Beam *beam,
         if (step != STEP_SURFACE || is_last(&walk, &hit))
             break;
         surface_sample(thread, &walk.ray, &hit, &walk.inside, &s);
-        Rgb diffuse = not_negative(surface_diffuse(&s));
         Roulette roulette;
         if (passes_through(&walk, &hit)) {
             pass_through(&walk, &s);
@@ -521,15 +541,15 @@ Rgb photon_scout(TraceThread *thread, const WalkRules *rules, const Beam *beam,
                 break;
             continue;
         }
-        set_roulette(&walk, &s, diffuse, &roulette);
+        set_roulette(&walk, &s, &roulette);
         bool is_there = map_is_aimed(rules->map)
                             ? roulette.p_reflect + roulette.p_transmit > 0
-                            : !rgb_is_black(diffuse) && !is_beyond_reach(&walk, &s);
+                            : is_diffuse(&roulette) && !is_beyond_reach(&walk, &s);
         if (is_there) {
             found = rgb_mul(flux_here(&walk), walk.weight);
             *at = s.at.p;
         }
-        if (is_there || map_is_aimed(rules->map) || !rgb_is_black(diffuse) ||
+        if (is_there || map_is_aimed(rules->map) || is_diffuse(&roulette) ||
             !follow(&walk, &hit, &s, &roulette, spin(&walk, &roulette)) || is_over_limit(&walk))
             break;
     }

@@ -215,14 +215,14 @@ static const double rho[3] = {0.6, 0.4, 0.2}; /* of the room */
 static void make_room(LitScene *lit, const Ball *ball)
 {
     char text[1024];
-    snprintf(text, sizeof text,
-             "global_settings { assumed_gamma 1 max_trace_level 300 adc_bailout 1e-5\n"
-             "  photons { count 200000 } pms { gi on gi_method map global_photons 200000 } }\n"
-             LAMP_AT
-             "sphere { 0, 2 hollow pigment { rgb <%g,%g,%g> } finish { ambient 0 diffuse 1 } }\n"
-             "sphere { <%g,%g,%g>, %g %s }\n",
-             rho[0], rho[1], rho[2], ball->center.x, ball->center.y, ball->center.z, ball->radius,
-             ball->look);
+    snprintf(
+        text, sizeof text,
+        "global_settings { assumed_gamma 1 max_trace_level 300 adc_bailout 1e-5\n"
+        "  photons { count 200000 } pms { gi on gi_method map global_photons 200000 } }\n" LAMP_AT
+        "sphere { 0, 2 hollow pigment { rgb <%g,%g,%g> } finish { ambient 0 diffuse 1 } }\n"
+        "sphere { <%g,%g,%g>, %g %s }\n",
+        rho[0], rho[1], rho[2], ball->center.x, ball->center.y, ball->center.z, ball->radius,
+        ball->look);
     lit_make(lit, text, 2, 3);
     assert_non_null(lit->maps.caustic);
 }
@@ -401,6 +401,58 @@ static void the_eye_adds_three_parts(void **state)
     }
 }
 
+/* A lamp in a ball of paper, which reflects a and lets b through diffusely, in a white ball twice
+ * as wide: each side of the paper, and the ball, is evenly lit.  A quarter of what the ball sends
+ * falls on the paper, the rest on itself. */
+static void paper_glows_on_both_sides(void **state)
+{
+    (void)state;
+    const double a = 0.3, b = 0.5, r = 0.5;
+    /* What comes back to the outside of the paper of what it sends there; what that sends, and
+     * what comes back to it, of light on the inside; and that light. */
+    const double returned = r / (4 - 3 * r);
+    const double outer = b / (1 - a * returned), back = outer * returned;
+    const double inside = 1 / (1 - a - b * back);
+    const struct {
+        const char *camera;
+        double direct, all;
+    } views[] = {
+        {"location <0.5,0.1,0> look_at <1,0.2,0.1>", a, inside - 1},
+        {"location <1.5,0,0> look_at 0", b, inside * outer},
+        {"location <1.5,0,0> look_at <2,0,0>", 0, inside * back},
+    };
+    for (int i = 0; i < 3; i++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 "#version 3.7;\n"
+                 "global_settings { assumed_gamma 1 max_trace_level 200\n"
+                 "  pms { gi on gi_method map global_photons 400000 } }\n"
+                 "camera { %s right x up y angle 30 }\n"
+                 "light_source { <0,0,0> rgb 1 }\n"
+                 "sphere { 0, 1 hollow pigment { rgb 1 } finish { ambient 0 diffuse %g, %g } }\n"
+                 "sphere { 0, 2 hollow pigment { rgb 1 } finish { ambient 0 diffuse %g } }\n",
+                 views[i].camera, a, b, r);
+        LitScene lit;
+        LitEye eye;
+        lit_make(&lit, text, 2, 3);
+        lit_eye_open(&eye, &lit, lit_within(0.3));
+        double direct = 0, indirect = 0;
+        for (int k = 0; k < 64; k++) {
+            EyeSample seen = lit_look(&eye, (k % 8 + 0.5) / 8, (k / 8 + 0.5) / 8);
+            direct += (double)seen.part[PART_DIRECT].g / 64;
+            indirect += (double)seen.part[PART_INDIRECT].g / 64;
+        }
+        lit_eye_close(&eye);
+        lit_done(&lit);
+        double expected = views[i].all - views[i].direct;
+        print_message("# direct %.4f of %.4f, indirect %.4f of %.4f\n", direct, views[i].direct,
+                      indirect, expected);
+        assert_true(fabs(direct - views[i].direct) < 1e-5);
+        /* Each disk of 0.3 has some thousand photons of either side. */
+        assert_true(fabs(indirect / expected - 1) < 0.03);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -410,6 +462,7 @@ int main(void)
         cmocka_unit_test(all_light_arrives_once),
         cmocka_unit_test(flags_never_count_twice),
         cmocka_unit_test(the_eye_adds_three_parts),
+        cmocka_unit_test(paper_glows_on_both_sides),
     };
     return cmocka_run_group_tests_name("light_paths", tests, NULL, NULL);
 }
