@@ -10,6 +10,10 @@
 #include "base/diag.h"
 #include "eye/final_gather.h"
 
+/* error_bound is in units in which the language's default gives a good picture; so much of it is
+ * the error bound here. */
+#define CACHE_ERROR_UNIT 0.25
+
 typedef struct IrradianceRecord {
     V3 p, n;       /* n unit, the side it is for */
     double radius; /* scene units: where the error of distance is 1 */

@@ -1,7 +1,7 @@
 /* One pass: photon maps, then the film.  SPDX-License-Identifier: Apache-2.0 */
 #include "render/pass.h"
 
-#include "eye/indirect.h"
+#include "eye/cache_fill.h"
 #include "render/tiles.h"
 
 /* Photons whose surface is turned further from the surface at hand than this (its cosine) lie
@@ -149,7 +149,7 @@ static Status fill_cache(Pass *pass, EyeOptions *eye)
                             .progress = options->progress ? cache_progress : NULL,
                             .progress_ctx = (void *)(uintptr_t)options};
     Status status =
-        indirect_cache_fill(pass->tracer, eye, &filling, pass->diag, pass->stats, &pass->cache);
+        irradiance_cache_fill(pass->tracer, eye, &filling, pass->diag, pass->stats, &pass->cache);
     pass->stats->seconds[PHASE_IRRADIANCE] += clock_wall() - started;
     eye->cache = pass->cache;
     return status;

@@ -1,7 +1,7 @@
-/* Indirect light as the eye sees it, and the rounds that fill the irradiance cache ahead.
+/* The rounds that fill the irradiance cache ahead of the picture.
  * SPDX-License-Identifier: Apache-2.0 */
-#ifndef PMS_EYE_INDIRECT_H
-#define PMS_EYE_INDIRECT_H
+#ifndef PMS_EYE_CACHE_FILL_H
+#define PMS_EYE_CACHE_FILL_H
 
 #include "eye/eye.h"
 #include "eye/irradiance_cache.h"
@@ -15,8 +15,8 @@ typedef struct CacheFilling {
 /* Fill a new cache for the picture that `options` are for: from coarse to fine, every round reads
  * what the rounds before have found, so that the result is the same for any number of threads.
  * *out stays NULL if the plan has no cache.  ERR_MEMORY, ERR_INTERRUPTED or OK. */
-Status indirect_cache_fill(const Tracer *tracer, const EyeOptions *options,
-                           const CacheFilling *filling, Diag *diag, Stats *stats,
-                           IrradianceCache **out);
+Status irradiance_cache_fill(const Tracer *tracer, const EyeOptions *options,
+                             const CacheFilling *filling, Diag *diag, Stats *stats,
+                             IrradianceCache **out);
 
 #endif
