@@ -4,6 +4,9 @@
  * outside solids that are not hollow.  SPDX-License-Identifier: Apache-2.0 */
 #include "eye/air_int.h"
 
+/* Gather rays are many: each looks for photons in one of so many parts of its way. */
+enum { RAY_PARTS = 16 };
+
 /* --- fog ---------------------------------------------------------------------------------- */
 
 /* Lay a layer over what is seen: `clear` is what passes it, `color` its own light. */
@@ -129,17 +132,68 @@ void air_profile(EyeThread *eye, const MediaHere *here, const Ray *ray, double l
     media_profile(here, ray, 0, end, scene_end(eye->trace.tracer, ray), &eye->rng, out);
 }
 
+/* The light of one of the lamps, for all of them. */
+static Rgb some_lamp(EyeThread *eye, const MediaHere *here, const MediaProfile *profile,
+                     const Interiors *inside, const Ray *ray)
+{
+    int count = 0;
+    for (int i = 0; i < eye->light_count; i++)
+        count += eye->lights[i].lights_media;
+    if (count == 0)
+        return RGB_BLACK;
+    int chosen = (int)(rng_double(&eye->rng) * count), i = 0;
+    while (!eye->lights[i].lights_media || chosen-- > 0)
+        i++;
+    MediaLobes lobes;
+    media_lobes(here, &lobes);
+    Rgb light = media_scatter_some(eye, &eye->lights[i], &lobes, profile, inside, ray);
+    return rgb_scale(light, (float)count);
+}
+
+const MediaCell *air_cell_at(const MediaProfile *profile, double t)
+{
+    int low = 0, high = profile->count - 1;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (profile->cells[middle].end <= t)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return &profile->cells[low];
+}
+
+/* The photons of a part of a ray drawn at random, for all of it. */
+static void some_photons(EyeThread *eye, const MediaHere *here, const MediaProfile *profile,
+                         const Ray *ray, Rgb light[PART_COUNT])
+{
+    Rgb found[PART_COUNT] = {RGB_BLACK};
+    double end = profile->cells[profile->count - 1].end;
+    end = fmin(end, scene_end(eye->trace.tracer, ray));
+    int part = (int)(rng_double(&eye->rng) * RAY_PARTS);
+    media_photons(eye, here, profile, ray, end * part / RAY_PARTS, end * (part + 1) / RAY_PARTS,
+                  found);
+    for (int i = 0; i < PART_COUNT; i++)
+        light[i] = rgb_scale(found[i], RAY_PARTS);
+}
+
 static void add_media(EyeThread *eye, const MediaHere *here, const Ray *ray, double length,
-                      AirLight wanted, Veil *veil)
+                      const Interiors *inside, AirLight wanted, Veil *veil)
 {
     MediaProfile profile;
     air_profile(eye, here, ray, length, &profile);
     Rgb light = glow(&profile);
     if (wanted == AIR_SEEN && plan_has(eye->plan, FEATURE_LIGHTS))
         media_scatter(eye, here, &profile, ray, &light);
-    if (wanted == AIR_SEEN && eye->options.volume) {
+    if (wanted == AIR_GATHERED && plan_has(eye->plan, FEATURE_LIGHTS))
+        light = rgb_add(light, some_lamp(eye, here, &profile, inside, ray));
+    if (wanted != AIR_GLOW && eye->options.volume) {
         Rgb found[PART_COUNT] = {RGB_BLACK};
-        media_photons(eye, here, &profile, ray, found);
+        double end = profile.cells[profile.count - 1].end;
+        if (wanted == AIR_SEEN)
+            media_photons(eye, here, &profile, ray, 0, end, found);
+        else
+            some_photons(eye, here, &profile, ray, found);
         for (int i = 0; i < PART_COUNT; i++)
             veil->light[i] = rgb_add(veil->light[i], rgb_mul(veil->through, found[i]));
     }
@@ -152,13 +206,14 @@ void air_along(EyeThread *eye, const Ray *ray, double length, const Interiors *i
     MediaHere here;
     *out = (Veil){.through = RGB_WHITE, .front = RGB_WHITE, .back = RGB_WHITE};
     media_here(eye->trace.tracer, inside, &here);
+    here.is_conserving = wanted != AIR_SEEN;
     if (!here.is_open)
         return;
     if (plan_has(eye->plan, FEATURE_FOG))
         add_fogs(eye->scene, ray, length, out);
     out->front = out->through;
     if (plan_has(eye->plan, FEATURE_MEDIA) && here.list_count > 0)
-        add_media(eye, &here, ray, length, wanted, out);
+        add_media(eye, &here, ray, length, inside, wanted, out);
     if (plan_has(eye->plan, FEATURE_RAINBOW))
         add_rainbows(eye, ray, length, out);
 }

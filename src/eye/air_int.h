@@ -15,8 +15,10 @@ typedef struct Veil {
 
 /* What a ray looks for in media. */
 typedef enum AirLight {
-    AIR_SEEN, /* their own light and what they scatter to the eye */
-    AIR_GLOW  /* their own light */
+    AIR_SEEN,     /* their own light and what they scatter to the eye */
+    AIR_GATHERED, /* the same for light that will be reflected: it keeps its energy, and is that of
+                     one place drawn at random */
+    AIR_GLOW      /* their own light */
 } AirLight;
 
 /* Find what lies along the first `length` scene units of a ray inside `inside`; an infinite length
@@ -28,6 +30,9 @@ void air_along(EyeThread *eye, const Ray *ray, double length, const Interiors *i
 void air_profile(EyeThread *eye, const MediaHere *here, const Ray *ray, double length,
                  MediaProfile *out);
 
+/* Return the cell of a profile at t. */
+const MediaCell *air_cell_at(const MediaProfile *profile, double t);
+
 /* Return what passes the media along the first `length` scene units of a ray. */
 Rgb air_clear(EyeThread *eye, const Ray *ray, double length, const Interiors *inside);
 
@@ -35,9 +40,15 @@ Rgb air_clear(EyeThread *eye, const Ray *ray, double length, const Interiors *in
 void media_scatter(EyeThread *eye, const MediaHere *here, const MediaProfile *profile,
                    const Ray *ray, Rgb *light);
 
-/* Add the light of the photons in the media along a ray to the parts of *out it belongs to. */
+/* Return the light of a lamp that media scatter along a ray to its begin, from one place drawn at
+ * random; the mean over many is all of it. */
+Rgb media_scatter_some(EyeThread *eye, const EyeLight *light, const MediaLobes *lobes,
+                       const MediaProfile *profile, const Interiors *inside, const Ray *ray);
+
+/* Add the light of the photons in the media along a ray, from t = begin to end, to the parts it
+ * belongs to. */
 void media_photons(EyeThread *eye, const MediaHere *here, const MediaProfile *profile,
-                   const Ray *ray, Rgb light[PART_COUNT]);
+                   const Ray *ray, double begin, double end, Rgb light[PART_COUNT]);
 
 /* The part of a ray, from begin to end, on which a light can shine; returns false if none is. */
 bool light_stretch(const Light *light, const Ray *ray, double *begin, double *end);

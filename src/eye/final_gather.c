@@ -8,10 +8,14 @@
  *
  * A ray that ends where the irradiance was estimated over a disk as large as the ray is long would
  * show that disk's blur: there the light is found anew, by shadow rays and a small gathering.
+ *
+ * Media dim a ray and send it what they give off, what they scatter of a lamp from a place drawn at
+ * random, and the photons in them.
  * SPDX-License-Identifier: Apache-2.0 */
 #include "eye/final_gather.h"
 
 #include "base/work.h"
+#include "eye/air_int.h"
 #include "math/sample.h"
 
 #include <string.h>
@@ -169,16 +173,34 @@ static Rgb limited(Rgb light, double most)
     return most > 0 && above > 1 ? rgb_scale(light, (float)(1 / above)) : light;
 }
 
+/* Take what lies in the air along the next `length` of the way. */
+static Rgb air_light(EyeThread *eye, GatherRay *way, double length)
+{
+    Veil veil;
+    Rgb sum = RGB_BLACK;
+    air_along(eye, &way->ray, length, &way->inside, AIR_GATHERED, &veil);
+    for (int i = 0; i < PART_COUNT; i++)
+        sum = rgb_add(sum, veil.light[i]);
+    sum = rgb_mul(way->weight, sum);
+    way->weight = rgb_mul(way->weight, veil.through);
+    return sum;
+}
+
 /* Follow a gather ray; *distance is that of the first surface, infinite if there is none. */
 static Rgb follow(EyeThread *eye, GatherRay *way, double *distance)
 {
     Rgb sum = RGB_BLACK;
     double length = 0;
+    bool was_dimmed = eye->trace.is_dimmed;
+    eye->trace.is_dimmed = true; /* as the photons are */
     *distance = INFINITY;
     for (int i = 0; i < CHAIN_MAX && !work_interrupted; i++) {
         Hit hit;
         SurfaceSample s;
-        if (!trace_closest(&eye->trace, &way->ray, RAY_DIFFUSE, &hit)) {
+        bool is_hit = trace_closest(&eye->trace, &way->ray, RAY_DIFFUSE, &hit);
+        if (eye->has_air)
+            sum = rgb_add(sum, air_light(eye, way, is_hit ? hit.t : INFINITY));
+        if (!is_hit) {
             if (plan_has(eye->plan, FEATURE_SKY_LIGHT)) {
                 Rgb sky = sky_light_from(eye->trace.tracer, way->ray.d);
                 sum = rgb_add(sum, rgb_mul(way->weight, sky));
@@ -196,6 +218,7 @@ static Rgb follow(EyeThread *eye, GatherRay *way, double *distance)
         if (!go_on(eye, way, &hit, &s))
             break;
     }
+    eye->trace.is_dimmed = was_dimmed;
     return limited(sum, eye->scene->settings.radiosity.max_sample);
 }
 

@@ -14,94 +14,6 @@
 /* Light without pi in it: physics has 4 where the language has 1, see texture/media.h. */
 #define SCATTERING_UNIT 4
 
-/* --- light of the lamps where a path was scattered -------------------------------------------- */
-
-/* A point of the light: of an area light any of its grid. */
-static V3 some_point(EyeThread *eye, const EyeLight *light, V3 to_light)
-{
-    const Light *source = light->light;
-    if (!light->is_area)
-        return source->location;
-    AreaFrame frame = area_frame(source, to_light);
-    int i = (int)(rng_double(&eye->rng) * source->area.size1);
-    int j = (int)(rng_double(&eye->rng) * source->area.size2);
-    return v3_add(source->location, area_offset(source, &frame, i, j, &eye->rng));
-}
-
-/* What arrives at p of a light, from a point of it. */
-static Rgb arriving_light(EyeThread *eye, const EyeLight *light, V3 point, V3 p)
-{
-    const Light *source = light->light;
-    LightSample center = light_at(source, source->location, p);
-    if (rgb_is_black(center.color))
-        return RGB_BLACK;
-    LightSample sample = light_at(source, point, p);
-    if (!(sample.distance > 0))
-        return center.color;
-    ShapePoint from = {.p = p, .ng = sample.to_light, .ns = sample.to_light};
-    Rgb arrived = media_air_shadow(&eye->trace, p, sample.to_light, sample.distance, light->index);
-    if (light->has_shadow)
-        arrived = rgb_mul(arrived, trace_shadow(&eye->trace, &from, sample.to_light,
-                                                sample.distance, light->index, false));
-    return rgb_mul(center.color, arrived);
-}
-
-static V3 direction_to(const EyeLight *light, V3 p)
-{
-    return light_at(light->light, light->light->location, p).to_light;
-}
-
-/* The light of a lamp that a medium scatters into direction -d, of light that collides. */
-static Rgb scattered_at(EyeThread *eye, const EyeLight *light, const Medium *medium, V3 p, V3 d)
-{
-    V3 to = direction_to(light, p);
-    double phase = phase_value(medium->phase, (double)medium->eccentricity, v3_dot(to, d));
-    double scale = 1 / (SCATTERING_UNIT * phase_mean(medium->phase));
-    return rgb_scale(arriving_light(eye, light, some_point(eye, light, to), p),
-                     (float)(phase * scale));
-}
-
-/* Light that fades is without limit near the lamp: where paths collide is no measure of it. */
-static bool is_fading(const Light *light)
-{
-    return light->fade_power > 0 && light->fade_distance > 0 && !light->is_parallel &&
-           light->kind != LIGHT_CYLINDER;
-}
-
-static const MediaCell *cell_at(const MediaProfile *profile, double t)
-{
-    int i = 0;
-    while (i + 1 < profile->count && t >= profile->cells[i].end)
-        i++;
-    return &profile->cells[i];
-}
-
-/* The light of a lamp that media scatter along a ray, from a place drawn evenly by the angle that
- * the ray is seen under from the lamp. */
-static Rgb scattered_along(EyeThread *eye, const EyeLight *light, const MediaHere *here,
-                           const MediaProfile *profile, const Interiors *inside, const Ray *ray)
-{
-    V3 point = some_point(eye, light, direction_to(light, ray->o)), to = v3_sub(point, ray->o);
-    double nearest = v3_dot(to, ray->d), away = v3_dist(point, ray_at(ray, nearest));
-    double end = profile->cells[profile->count - 1].end;
-    double low = atan2(-nearest, away), high = atan2(end - nearest, away);
-    double angle = low + (high - low) * rng_double(&eye->rng), cosine = cos(angle);
-    if (!(away > 0 && high > low && cosine > 0))
-        return RGB_BLACK;
-    double t = fmin(end, fmax(0, nearest + away * tan(angle)));
-    double over_density = (high - low) * away / (cosine * cosine);
-    const MediaCell *cell = cell_at(profile, t);
-    V3 p = ray_at(ray, t), looked_at = here->is_homogeneous ? p : ray_at(ray, cell->at);
-    MediaLobes lobes;
-    media_lobes(here, &lobes);
-    Rgb scattered = media_scattered(&lobes, looked_at, v3_dot(direction_to(light, p), ray->d));
-    if (rgb_is_black(scattered))
-        return RGB_BLACK;
-    Rgb depth = rgb_mad(cell->depth, (float)(t - cell->begin), cell->point.extinction);
-    Rgb seen = rgb_mul(rgb_mul(scattered, media_clear(depth)), interiors_fade(inside, t));
-    return rgb_scale(rgb_mul(seen, arriving_light(eye, light, point, p)), (float)over_density);
-}
-
 /* --- turning off ------------------------------------------------------------------------------ */
 
 /* Go on from p, scattered by a medium. */
@@ -199,31 +111,18 @@ static bool show(EyeThread *eye, Path *path, const MediaHere *here, const MediaP
     return true;
 }
 
-/* Add the light of the lamps that fade, scattered anywhere along the ray. */
-static void add_fading(EyeThread *eye, const Path *path, const MediaHere *here,
-                       const MediaProfile *profile, const Veil *veil, Radiance *out)
+/* Add the light of the lamps that media scatter anywhere along the ray. */
+static void add_lamps(EyeThread *eye, const Path *path, const MediaHere *here,
+                      const MediaProfile *profile, const Veil *veil, Radiance *out)
 {
     Rgb sum = RGB_BLACK;
-    for (int i = 0; i < eye->light_count; i++) {
-        const EyeLight *light = &eye->lights[i];
-        if (light->lights_media && is_fading(light->light))
-            sum =
-                rgb_add(sum, scattered_along(eye, light, here, profile, &path->inside, &path->ray));
-    }
+    MediaLobes lobes;
+    media_lobes(here, &lobes);
+    for (int i = 0; i < eye->light_count; i++)
+        if (eye->lights[i].lights_media)
+            sum = rgb_add(sum, media_scatter_some(eye, &eye->lights[i], &lobes, profile,
+                                                  &path->inside, &path->ray));
     add_part(out, PART_INDIRECT, rgb_mul(path->weight, veil->front), sum);
-}
-
-/* Add the light of the others, where the path collided. */
-static void add_collided(EyeThread *eye, const Path *path, const Medium *medium, V3 p,
-                         Radiance *out)
-{
-    Rgb sum = RGB_BLACK;
-    for (int i = 0; i < eye->light_count; i++) {
-        const EyeLight *light = &eye->lights[i];
-        if (light->lights_media && !is_fading(light->light))
-            sum = rgb_add(sum, scattered_at(eye, light, medium, p, path->ray.d));
-    }
-    add_part(out, PART_INDIRECT, path->weight, sum);
 }
 
 /* Let a path that was scattered before collide, or pass. */
@@ -233,9 +132,8 @@ static bool collide(EyeThread *eye, Path *path, const MediaHere *here, const Med
     const MediaCell *cell;
     double t;
     Rgb clear, kept = RGB_BLACK, w = path->weight;
-    bool has_lights = plan_has(eye->plan, FEATURE_LIGHTS);
-    if (has_lights)
-        add_fading(eye, path, here, profile, veil, out);
+    if (plan_has(eye->plan, FEATURE_LIGHTS))
+        add_lamps(eye, path, here, profile, veil, out);
     bool is_met = media_collide(profile, rgb(fabsf(w.r), fabsf(w.g), fabsf(w.b)), &eye->rng, &t,
                                 &clear, &cell);
     path_weigh(path, rgb_mul(veil->front, clear));
@@ -249,8 +147,6 @@ static bool collide(EyeThread *eye, Path *path, const MediaHere *here, const Med
     path_weigh(path, rgb_mul(kept, interiors_fade(&path->inside, t)));
     if (!medium)
         return true;
-    if (has_lights)
-        add_collided(eye, path, medium, p, out);
     turn(eye, path, p, medium);
     return true;
 }

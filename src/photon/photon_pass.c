@@ -71,9 +71,10 @@ static void warn_of_none(const Emission *emission, MapKind kind, const char *rea
 static Status emit(Emission *emission, MapKind kind, Stats *stats, PhotonList *photons)
 {
     if (emission->budget == 0) {
-        warn_of_none(emission, kind,
-                     map_is_aimed(kind) ? "no light reaches a target"
-                                        : "no light reaches a surface");
+        if (emission->source_count > 0) /* media that glow send no photons */
+            warn_of_none(emission, kind,
+                         map_is_aimed(kind) ? "no light reaches a target"
+                                            : "no light reaches a surface");
         return OK;
     }
     PhotonList sent;

@@ -362,7 +362,8 @@ static void plan_indirect(const Scene *scene, const PlanOptions *options, const 
     bool may_be =
         options->quality >= QUALITY_PHOTONS && is_asked && !has_paths && !options->has_no_photons;
     plan->has_ambient = !has_paths && (!may_be || is_old);
-    bool has_light = found->light || sky_shines(scene) || glowing_surface(scene, plan);
+    bool has_light = found->light || sky_shines(scene) || glowing_surface(scene, plan) ||
+                     plan_media_glow(scene);
     if (row_below(row, options->quality, QUALITY_PHOTONS))
         return;
     if (has_paths)

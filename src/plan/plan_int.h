@@ -7,6 +7,9 @@
 /* Set the rows of media, fog and rainbows. */
 void plan_media(const Scene *scene, int quality, PlanRow *rows);
 
+/* Return true if some medium that is seen gives off light. */
+bool plan_media_glow(const Scene *scene);
+
 /* Set the row of the volume map and what it holds, when all other rows are set. */
 void plan_volume(const Scene *scene, Plan *plan);
 

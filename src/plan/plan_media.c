@@ -80,6 +80,24 @@ void plan_media(const Scene *scene, int quality, PlanRow *rows)
     }
 }
 
+static bool any_glows(const Medium *const *media, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (!rgb_is_black(media[i]->emission))
+            return true;
+    return false;
+}
+
+bool plan_media_glow(const Scene *scene)
+{
+    bool found = any_glows(scene->atmosphere.media, scene->atmosphere.media_count);
+    for (uint32_t i = 0; i < scene->surface_count && !found; i++) {
+        const Interior *interior = scene->surfaces[i].interior;
+        found = interior->is_hollow && any_glows(interior->media, interior->media_count);
+    }
+    return found;
+}
+
 /* --- photons in media --------------------------------------------------------------------- */
 
 static bool collects(const Medium *const *media, int count)
