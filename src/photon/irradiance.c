@@ -43,7 +43,7 @@ enum {
 
 /* Places are so dense that one nearer than this, in radii, is found almost always, except where
  * bright light ends: there places of small disks crowd on one side. */
-#define PLACE_NEAR 0.7
+#define PLACE_NEAR 0.5
 
 /* Which way places face: along an axis, the lower way or the higher. */
 enum { FACINGS = 6 };
@@ -345,11 +345,20 @@ typedef struct NearPlace {
     Photon place;
     V3 p;
     double radius;
-    double off2; /* square of the distance in radii, as GATHER_DISK measures it */
+    double distance2, off2; /* as GATHER_DISK measures it: in scene units and in radii, squared */
+    bool is_near;           /* for its radius */
 } NearPlace;
 
-/* Sort places found into those there are, nearest in radii of their own first; returns how many
- * there are then. */
+/* Of places near for their radii the nearest is the best: were it the one nearest in radii, those
+ * that came out with large radii, and so with little light, would be chosen too often. */
+static bool is_better(const NearPlace *a, const NearPlace *b)
+{
+    if (a->is_near != b->is_near)
+        return a->is_near;
+    return a->is_near ? a->distance2 < b->distance2 : a->off2 < b->off2;
+}
+
+/* Sort places found into those there are, the best first; returns how many there are then. */
 static int sort_places(const PhotonMap *map, const uint32_t *index, int count, V3 p, V3 n,
                        NearPlace *out, int sorted)
 {
@@ -357,11 +366,13 @@ static int sort_places(const PhotonMap *map, const uint32_t *index, int count, V
         NearPlace near = {.place = photon_map_at(map, index[i])};
         near.p = photon_place(map, &near.place);
         near.radius = radius_decode(&near.place);
-        near.off2 = photon_distance2(map, &near.place, p, n) / (near.radius * near.radius);
+        near.distance2 = photon_distance2(map, &near.place, p, n);
+        near.off2 = near.distance2 / (near.radius * near.radius);
+        near.is_near = near.off2 < PLACE_NEAR * PLACE_NEAR;
         if (!(near.off2 <= PLACE_REACH * PLACE_REACH))
             continue;
         int at = sorted++;
-        for (; at > 0 && out[at - 1].off2 > near.off2; at--)
+        for (; at > 0 && is_better(&near, &out[at - 1]); at--)
             out[at] = out[at - 1];
         out[at] = near;
     }
@@ -399,7 +410,7 @@ static int find_speakers(const IrradianceMap *map, GatherScratch *scratch, V3 p,
 {
     bool is_all;
     int found = find_places(map, scratch, p, n, LOOKUP_PLACES, out, &is_all);
-    if (!is_all && !(found > 0 && out[0].off2 < PLACE_NEAR * PLACE_NEAR))
+    if (!is_all && !(found > 0 && out[0].is_near))
         found = find_places(map, scratch, p, n, LOOKUP_MORE, out, &is_all);
     return found;
 }
