@@ -47,7 +47,7 @@ ALLCFLAGS := -std=c17 -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 $(BASEFLAGS)
 ALLCXXFLAGS := -std=c++17 $(BASEFLAGS) $(WARN) $(CXXFLAGS)
 LIBS     := $(PKGLIB) -lm -lstdc++ -lpthread
 
-.PHONY: all help deps demo check check-all parity bench fuzz gallery floors headers install clean
+.PHONY: all help deps demo check check-all check-kill parity bench fuzz gallery floors headers install clean
 .DEFAULT_GOAL := all
 .SECONDARY:
 
@@ -80,6 +80,11 @@ unit: $(UNIT)
 check-all: deps ## the tests under sanitizers, and the long ones
 	$(Q)$(MAKE) --no-print-directory check
 	$(Q)$(MAKE) --no-print-directory check MODE=asan
+	$(Q)$(MAKE) --no-print-directory check-kill
+
+check-kill: deps ## kill progressive renders 20 times at random moments, and resume them
+	$(Q)$(MAKE) --no-print-directory $(B)/pms
+	$(Q)KILLS=20 PMS=$(B)/pms prove -v tests/cli/kill.t
 
 check-physics: deps ## print what the tests of light measure, what is expected, and the error
 	$(Q)$(MAKE) --no-print-directory check-physics-built

@@ -1,13 +1,15 @@
 #!/usr/bin/perl
 # Row S16: equal error, how long photons, paths and povray take to be as wrong as each other, on a
-# caustic and on the indirect light of a room.
+# caustic, on a spotlight in smoke and on the indirect light of two rooms.
+#
+#     tests/bench/equal_error.pl [caustic | smoke | room | window]...
 #
 # Error is the root mean square over the picture, or over a rectangle around the caustic.  Caustics
-# are compared with pictures of very many photons, each program's with its own, so that neither
-# pays for what the two see differently; indirect light with very many paths.  Time is processor
-# time of the whole program, one thread.  Paths have no bias: their time at another error follows
-# from its square.  povray's is read off the line through its measured points, both axes
-# logarithmic.  SPDX-License-Identifier: Apache-2.0
+# and smoke are compared with pictures of very many photons or samples, each program's with its own,
+# so that neither pays for what the two see differently; indirect light with very many paths.  Time
+# is processor time of the whole program, one thread.  Paths have no bias: their time at another
+# error follows from its square.  povray's is read off the line through its measured points, both
+# axes logarithmic.  SPDX-License-Identifier: Apache-2.0
 use strict;
 use warnings;
 use File::Temp 'tempdir';
@@ -132,28 +134,78 @@ sub caustic {
     print "\n";
 }
 
+# --- light in smoke -----------------------------------------------------------------------------
+
+# Errors are against a picture of very many samples, each program's against its own; that the two
+# agree is printed.  The first line of povray is its default setting.
+sub smoke {
+    my $scene = {name => 'smoke', width => 160, height => 120};
+    my @points = map { {Variance => $_} } (1 / 16, 1 / 32, 1 / 128, 1 / 512, 1 / 2048);
+    pms($scene, 'truth.exr', 99,
+        {Samples => 3000, Variance => 1e-8, Threshold => 1e-4, Level => 10}, '-A');
+    my @povray;
+    if ($has_povray) {
+        povray($scene, 'povray_truth.exr', {Samples => 1500, Intervals => 1}, '-A');
+        for my $point ({}, map { {Samples => $_} } 30, 100, 300) {
+            my $time = povray($scene, 'povray.exr', $point, '-A');
+            push @povray, [$time, rmse($scene, 'povray.exr', 'povray_truth.exr')];
+        }
+    }
+    print "\nequal error in smoke, processor seconds, one thread, three seeds\n";
+    printf "  the two references, of very many samples, differ by rmse %.4f\n",
+        rmse($scene, 'truth.exr', 'povray_truth.exr') if @povray;
+    printf "  %8s %8s %16s %9s %6s\n", 'variance', 'seconds', 'rmse', 'povray', 'times';
+    my @known;
+    for my $point (@points) {
+        my ($time, $error, $spread) = @{over_seeds($scene, 'truth.exr', $point, '-A')};
+        push @known, [$time, $error];
+        printf "  %8s %8.3f %8.4f +-%4.0f %%", '1/' . int(1 / $point->{Variance}), $time, $error,
+            $spread;
+        if (@povray) {
+            my $by_povray = time_at($error, @povray);
+            printf " %9.3f %6.1f", $by_povray, $by_povray / $time;
+        }
+        print "\n";
+    }
+    return if !@povray;
+    my ($seconds, $error) = @{$povray[0]};
+    my $time = time_at($error, @known);
+    printf "  povray as it is by default: %.3f s, rmse %.4f; pms for that error %.3f s:"
+        . " %.1f times less (reach 5)\n", $seconds, $error, $time, $seconds / $time;
+}
+
 # --- indirect light -----------------------------------------------------------------------------
 
 sub indirect {
-    my $scene = {name => 'room', width => 80, height => 60};
+    my ($name, $what, $grid, $paths) = @_;    # grid x grid samples of a pixel
+    my $scene = {name => $name, width => 80, height => 60};
     my @points = map { {Count => $_->[0], Bound => $_->[1], Bounces => $_->[2]} }
         ([50, 1, 2], [150, 0.5, 3], [600, 0.25, 5]);
-    pms($scene, 'truth.exr', 99, {}, '--integrator', 'path', '--aa', 2048);
-    my ($time, $error, $spread) = @{over_seeds($scene, 'truth.exr', {}, '--aa', 4)};
-    print "\nequal error on the indirect light of a room, against 2048 paths a pixel\n";
+    pms($scene, 'truth.exr', 99, {}, '--integrator', 'path', '--aa', $paths);
+    my ($time, $error, $spread) = @{over_seeds($scene, 'truth.exr', {}, '--aa', $grid**2)};
+    print "\nequal error on the indirect light of $what, against $paths paths a pixel\n";
     printf "  pms                          %8.3f s, rmse %.4f +- %.0f %%\n", $time, $error, $spread;
     return if !$has_povray;
     my @povray;
     for my $point (@points) {
-        my $seconds = povray($scene, 'povray.exr', $point, '+A0.0', '+AM1', '+R2', '-J');
+        my $seconds = povray($scene, 'povray.exr', $point, '+A0.0', '+AM1', "+R$grid", '-J');
         my $rmse = rmse($scene, 'povray.exr', 'truth.exr');
         printf "  povray, count %3d bound %.2f  %8.3f s, rmse %.4f\n", $point->{Count},
             $point->{Bound}, $seconds, $rmse;
         push @povray, [$seconds, $rmse];
     }
-    printf "  pms takes %.1f times less than povray's last line (reach 4), at %.1f times less error\n",
-        $povray[-1][0] / $time, $povray[-1][1] / $error;
+    printf "  pms takes %.1f times less than povray's last line (reach 4), at %.1f times less"
+        . " error\n", $povray[-1][0] / $time, $povray[-1][1] / $error;
 }
 
-caustic();
-indirect();
+my %rows = (
+    caustic => \&caustic,
+    smoke   => \&smoke,
+    room    => sub { indirect('room', 'a room lit from its ceiling', 2, 2048) },
+    window  => sub { indirect('window', 'a room lit through a window', 4, 4096) },
+);
+@ARGV = qw(caustic smoke room window) if !@ARGV;
+for my $row (@ARGV) {
+    die "no row '$row'\n" if !$rows{$row};
+    $rows{$row}->();
+}
