@@ -1,7 +1,8 @@
 /* What media and fog take from light on its way to a point.
  *
  * The solids with media on the way are asked where the ray enters and leaves them: no stack of
- * interiors is needed for that, and a ray may begin anywhere.  SPDX-License-Identifier: Apache-2.0
+ * interiors is needed for that, and a ray may begin anywhere.  So are those that are not hollow: in
+ * them there are no media and no fog.  SPDX-License-Identifier: Apache-2.0
  */
 #include "trace/media_along.h"
 
@@ -15,10 +16,17 @@ typedef struct Stretch {
     const Interior *interior;
 } Stretch;
 
+static const Shape *first_leaf(const Shape *shape)
+{
+    while (shape->child_count > 0)
+        shape = shape->children[0];
+    return shape;
+}
+
 /* Where the crossings of a solid say that the ray is inside, between 0 and tmax.  Stretches
  * without end there are left out unless the light dims. */
-static int find_stretches(const Tracer *tracer, const CrossList *list, double tmax,
-                          bool is_to_light, Stretch *out)
+static int find_stretches(const Tracer *tracer, const Shape *shape, const CrossList *list,
+                          double tmax, bool is_to_light, Stretch *out)
 {
     int count = 0, inside = list->is_inside_before;
     double begin = -INFINITY;
@@ -31,9 +39,9 @@ static int find_stretches(const Tracer *tracer, const CrossList *list, double tm
             leaf = c->leaf;
             inside = true;
         } else if (inside && (!c || c->change < 0)) {
-            const Shape *lender = leaf ? leaf : c ? c->leaf : NULL;
+            const Shape *lender = leaf ? leaf : c ? c->leaf : first_leaf(shape);
             inside = false;
-            if (!lender || !(t > 0) || !(begin < tmax) || (t >= tmax && !is_to_light))
+            if (!(t > 0) || !(begin < tmax) || (t >= tmax && !is_to_light))
                 continue;
             out[count++] = (Stretch){fmax(0, begin), fmin(tmax, t),
                                      tracer->scene->surfaces[lender->surface].interior};
@@ -42,23 +50,65 @@ static int find_stretches(const Tracer *tracer, const CrossList *list, double tm
     return count;
 }
 
-static Rgb object_media(TraceThread *thread, uint32_t object, const Ray *ray, bool is_to_light)
+static int object_stretches(TraceThread *thread, uint32_t object, const Ray *ray, bool is_to_light,
+                            Stretch *out)
 {
     const Tracer *tracer = thread->tracer;
     const TracedObject *traced = &tracer->objects[object];
     if (traced->shadow == SHADOW_NONE || object_is_missed(traced, ray))
-        return RGB_WHITE;
+        return 0;
     CrossList list;
-    Stretch stretches[STRETCHES_MAX];
     shape_crossings(traced->shape, ray, thread->shapes, &list);
-    int count = find_stretches(tracer, &list, ray->tmax, is_to_light, stretches);
+    return find_stretches(tracer, traced->shape, &list, ray->tmax, is_to_light, out);
+}
+
+/* --- what is not hollow ----------------------------------------------------------------------- */
+
+/* Parts of the ray that are not in solids that are not hollow, in no order. */
+typedef struct OpenParts {
+    int count;
+    double begin[STRETCHES_MAX], end[STRETCHES_MAX];
+} OpenParts;
+
+static void cut(OpenParts *open, double begin, double end)
+{
+    for (int i = 0, count = open->count; i < count; i++) {
+        double first = open->begin[i], last = open->end[i];
+        if (!(begin < last && end > first))
+            continue;
+        open->end[i] = fmax(first, begin);
+        if (!(end < last) || open->count == STRETCHES_MAX)
+            continue;
+        open->begin[open->count] = end;
+        open->end[open->count++] = last;
+    }
+}
+
+static void find_open(TraceThread *thread, const Ray *ray, OpenParts *out)
+{
+    const Tracer *tracer = thread->tracer;
+    Stretch stretches[STRETCHES_MAX];
+    *out = (OpenParts){.count = 1, .end = {ray->tmax}};
+    for (uint32_t k = 0; k < tracer->solid_count; k++) {
+        int count = object_stretches(thread, tracer->solids[k], ray, true, stretches);
+        for (int i = 0; i < count; i++)
+            if (!stretches[i].interior->is_hollow)
+                cut(out, stretches[i].begin, stretches[i].end);
+    }
+}
+
+/* --- media ------------------------------------------------------------------------------------ */
+
+/* What passes media along the open parts of a stretch. */
+static Rgb open_transmittance(TraceThread *thread, const MediaHere *here, const Ray *ray,
+                              const OpenParts *open, double begin, double end)
+{
     Rgb light = RGB_WHITE;
-    for (int i = 0; i < count; i++) {
-        const Stretch *s = &stretches[i];
-        MediaHere here;
-        media_of_interior(s->interior, &here);
-        light = rgb_mul(
-            light, media_transmittance(&here, ray, s->begin, s->end, s->end, &thread->media_rng));
+    for (int i = 0; i < open->count; i++) {
+        double first = fmax(begin, open->begin[i]), last = fmin(end, open->end[i]);
+        if (last > first)
+            light = rgb_mul(light,
+                            media_transmittance(here, ray, first, last, last, &thread->media_rng));
     }
     return light;
 }
@@ -67,20 +117,37 @@ Rgb media_shadow(TraceThread *thread, const Ray *ray, bool is_to_light)
 {
     const Tracer *tracer = thread->tracer;
     Rgb light = RGB_WHITE;
-    for (uint32_t i = 0; i < tracer->media_count && !rgb_is_black(light); i++)
-        light = rgb_mul(light, object_media(thread, tracer->media[i], ray, is_to_light));
+    OpenParts open;
+    Stretch stretches[STRETCHES_MAX];
+    find_open(thread, ray, &open);
+    for (uint32_t k = 0; k < tracer->media_count && !rgb_is_black(light); k++) {
+        int count = object_stretches(thread, tracer->media[k], ray, is_to_light, stretches);
+        for (int i = 0; i < count; i++) {
+            const Stretch *s = &stretches[i];
+            MediaHere here;
+            media_of_interior(s->interior, &here);
+            light = rgb_mul(light, open_transmittance(thread, &here, ray, &open, s->begin, s->end));
+        }
+    }
     return light;
 }
 
 /* Fog keeps light off, and adds no colour of its own to it. */
-static Rgb fog_shadow(const Scene *scene, V3 p, V3 to, double distance)
+static Rgb fog_shadow(const Scene *scene, const Ray *ray, const OpenParts *open)
 {
     Rgb light = RGB_WHITE;
     for (int i = 0; i < scene->atmosphere.fog_count; i++) {
         const Fog *fog = scene->atmosphere.fogs[i];
-        if (!(fog->distance > 0))
+        double clear = 1, length = 0;
+        for (int k = 0; k < open->count && fog->distance > 0; k++) {
+            double begin = open->begin[k], end = open->end[k];
+            if (!(end > begin))
+                continue;
+            clear *= fog_clearness(fog, ray_at(ray, begin), ray_at(ray, end), end - begin);
+            length += end - begin;
+        }
+        if (!(length > 0))
             continue;
-        double clear = fog_clearness(fog, p, v3_mad(p, distance, to), distance);
         clear = fmax(clear, (double)fog->color.transmit);
         Rgb tint = rgb_lerp(RGB_WHITE, color5_rgb(fog->color), fog->color.filter);
         light = rgb_mul(light, rgb_scale(tint, (float)clear));
@@ -96,13 +163,14 @@ Rgb media_air_shadow(TraceThread *thread, V3 p, V3 to, double distance, int ligh
     if (!(is_dimmed || thread->is_dimmed) || !(distance > 0))
         return RGB_WHITE;
     Rgb passed = RGB_WHITE;
+    OpenParts open;
+    Ray ray = {p, to, 0, distance};
+    find_open(thread, &ray, &open);
     if (is_dimmed && plan_has(tracer->plan, FEATURE_FOG))
-        passed = fog_shadow(tracer->scene, p, to, distance);
+        passed = fog_shadow(tracer->scene, &ray, &open);
     if (!plan_has(tracer->plan, FEATURE_MEDIA))
         return passed;
     MediaHere here;
-    Ray ray = {p, to, 0, distance};
     media_of_air(tracer, &here);
-    return rgb_mul(passed,
-                   media_transmittance(&here, &ray, 0, distance, distance, &thread->media_rng));
+    return rgb_mul(passed, open_transmittance(thread, &here, &ray, &open, 0, distance));
 }

@@ -43,6 +43,9 @@ struct Tracer {
     uint32_t clear_count;
     uint32_t *media; /* solids with media in them that are seen, ascending */
     uint32_t media_count;
+    uint32_t *solids; /* that are not hollow and that shadow rays may be inside of, ascending; none
+                         where there is nothing they would keep out */
+    uint32_t solid_count;
     BundleIndex *bundles;
     ViewIndex *camera_view;  /* NULL: none */
     ViewIndex **light_views; /* per light; NULL: none */

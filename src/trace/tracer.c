@@ -13,6 +13,7 @@ enum { VIEW_OBJECTS_MAX = 1024, VIEW_LIGHTS_MAX = 32 };
 /* Which surfaces the leaves of a shape have. */
 typedef struct LeafSummary {
     bool may_transmit, has_filter, has_filter_besides_targets, is_closed, has_media, no_radiosity;
+    bool is_hollow;
 } LeafSummary;
 
 static bool is_refracting_target(const Surface *surface)
@@ -51,6 +52,7 @@ static void summarize(const Tracer *tracer, const Shape *shape, LeafSummary *sum
     sum->may_transmit |= surface->may_transmit;
     sum->has_media |= surface->interior->is_hollow && surface->interior->media_count > 0;
     sum->no_radiosity &= surface->no_radiosity;
+    sum->is_hollow &= surface->interior->is_hollow;
 }
 
 /* Return the largest factor by which the transform stretches: exact when its columns are at
@@ -88,11 +90,31 @@ static void set_ball(const Object *object, TracedObject *out)
     out->radius2 = out->radius * out->radius;
 }
 
+static bool is_within(const Object *object, V3 p)
+{
+    const Bound *b = &object->bound;
+    return p.x >= b->lo.x && p.x <= b->hi.x && p.y >= b->lo.y && p.y <= b->hi.y && p.z >= b->lo.z &&
+           p.z <= b->hi.z && shape_is_inside(object->shape, p);
+}
+
+/* May a shadow ray that arrives have been inside a solid?  Of an opaque one it does not pass the
+ * surface: the light is in it, or all of space may be. */
+static bool may_hold_shadow_ray(const Tracer *tracer, uint32_t i)
+{
+    const Object *object = &tracer->scene->objects[i];
+    const TracedObject *traced = &tracer->objects[i];
+    bool may =
+        traced->shadow != SHADOW_NONE && (traced->may_transmit || !bound_is_finite(object->bound));
+    for (int k = 0; k < tracer->scene->light_count && !may; k++)
+        may = traced->shadow != SHADOW_NONE && is_within(object, tracer->scene->lights[k].location);
+    return may;
+}
+
 static void describe_object(Tracer *tracer, uint32_t i)
 {
     const Object *object = &tracer->scene->objects[i];
     TracedObject *out = &tracer->objects[i];
-    LeafSummary sum = {.is_closed = true, .no_radiosity = true};
+    LeafSummary sum = {.is_closed = true, .no_radiosity = true, .is_hollow = true};
     summarize(tracer, object->shape, &sum);
     out->shape = object->shape;
     out->is_closed = sum.is_closed;
@@ -118,6 +140,8 @@ static void describe_object(Tracer *tracer, uint32_t i)
         tracer->clear[tracer->clear_count++] = i;
     if (has_media)
         tracer->media[tracer->media_count++] = i;
+    if (!sum.is_hollow && plan_has_air(tracer->plan) && may_hold_shadow_ray(tracer, i))
+        tracer->solids[tracer->solid_count++] = i;
 }
 
 /* Rays to this light all end in one point. */
@@ -198,7 +222,9 @@ Status tracer_new(const Scene *scene, const Plan *plan, int threads, Diag *diag,
     tracer->clear = mem_array((size_t)scene->object_count + 1, sizeof *tracer->clear);
     tracer->light_views = mem_array((size_t)scene->light_count + 1, sizeof *tracer->light_views);
     tracer->media = mem_array((size_t)scene->object_count + 1, sizeof *tracer->media);
-    if (!tracer->objects || !tracer->clear || !tracer->media || !tracer->light_views) {
+    tracer->solids = mem_array((size_t)scene->object_count + 1, sizeof *tracer->solids);
+    if (!tracer->objects || !tracer->clear || !tracer->media || !tracer->solids ||
+        !tracer->light_views) {
         tracer_free(tracer);
         return diag_no_memory(diag, "the tracer");
     }
@@ -235,6 +261,7 @@ void tracer_free(Tracer *tracer)
     mem_free(tracer->unbounded);
     mem_free(tracer->clear);
     mem_free(tracer->media);
+    mem_free(tracer->solids);
     mem_free(tracer->objects);
     mem_free(tracer);
 }
