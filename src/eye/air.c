@@ -171,14 +171,15 @@ static void some_photons(EyeThread *eye, const MediaHere *here, const MediaProfi
     double end = profile->cells[profile->count - 1].end;
     end = fmin(end, scene_end(eye->trace.tracer, ray));
     int part = (int)(rng_double(&eye->rng) * RAY_PARTS);
+    const AirEnds none = {.from = NULL};
     media_photons(eye, here, profile, ray, end * part / RAY_PARTS, end * (part + 1) / RAY_PARTS,
-                  found);
+                  &none, found);
     for (int i = 0; i < PART_COUNT; i++)
         light[i] = rgb_scale(found[i], RAY_PARTS);
 }
 
 static void add_media(EyeThread *eye, const MediaHere *here, const Ray *ray, double length,
-                      const Interiors *inside, AirLight wanted, Veil *veil)
+                      const AirEnds *ends, const Interiors *inside, AirLight wanted, Veil *veil)
 {
     MediaProfile profile;
     air_profile(eye, here, ray, length, &profile);
@@ -191,7 +192,7 @@ static void add_media(EyeThread *eye, const MediaHere *here, const Ray *ray, dou
         Rgb found[PART_COUNT] = {RGB_BLACK};
         double end = profile.cells[profile.count - 1].end;
         if (wanted == AIR_SEEN)
-            media_photons(eye, here, &profile, ray, 0, end, found);
+            media_photons(eye, here, &profile, ray, 0, end, ends, found);
         else
             some_photons(eye, here, &profile, ray, found);
         for (int i = 0; i < PART_COUNT; i++)
@@ -200,8 +201,8 @@ static void add_media(EyeThread *eye, const MediaHere *here, const Ray *ray, dou
     add_layer(veil, media_clear(profile.depth), light);
 }
 
-void air_along(EyeThread *eye, const Ray *ray, double length, const Interiors *inside,
-               AirLight wanted, Veil *out)
+void air_between(EyeThread *eye, const Ray *ray, double length, const AirEnds *ends,
+                 const Interiors *inside, AirLight wanted, Veil *out)
 {
     MediaHere here;
     *out = (Veil){.through = RGB_WHITE, .front = RGB_WHITE, .back = RGB_WHITE};
@@ -213,9 +214,16 @@ void air_along(EyeThread *eye, const Ray *ray, double length, const Interiors *i
         add_fogs(eye->scene, ray, length, out);
     out->front = out->through;
     if (plan_has(eye->plan, FEATURE_MEDIA) && here.list_count > 0)
-        add_media(eye, &here, ray, length, inside, wanted, out);
+        add_media(eye, &here, ray, length, ends, inside, wanted, out);
     if (plan_has(eye->plan, FEATURE_RAINBOW))
         add_rainbows(eye, ray, length, out);
+}
+
+void air_along(EyeThread *eye, const Ray *ray, double length, const Interiors *inside,
+               AirLight wanted, Veil *out)
+{
+    const AirEnds none = {.from = NULL};
+    air_between(eye, ray, length, &none, inside, wanted, out);
 }
 
 Rgb air_clear(EyeThread *eye, const Ray *ray, double length, const Interiors *inside)

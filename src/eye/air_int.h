@@ -13,6 +13,12 @@ typedef struct Veil {
     Rgb light[PART_COUNT]; /* added in front of it */
 } Veil;
 
+/* The surfaces that a ray comes from and goes to. */
+typedef struct AirEnds {
+    VolumeEnds planes;
+    const Object *from; /* that the ray comes from; NULL: none */
+} AirEnds;
+
 /* What a ray looks for in media. */
 typedef enum AirLight {
     AIR_SEEN,     /* their own light and what they scatter to the eye */
@@ -25,6 +31,10 @@ typedef enum AirLight {
  * is that of a ray that meets nothing. */
 void air_along(EyeThread *eye, const Ray *ray, double length, const Interiors *inside,
                AirLight wanted, Veil *out);
+
+/* The same with photons in media, for a ray between two surfaces. */
+void air_between(EyeThread *eye, const Ray *ray, double length, const AirEnds *ends,
+                 const Interiors *inside, AirLight wanted, Veil *out);
 
 /* Cut the first `length` scene units of a ray into cells. */
 void air_profile(EyeThread *eye, const MediaHere *here, const Ray *ray, double length,
@@ -46,9 +56,10 @@ Rgb media_scatter_some(EyeThread *eye, const EyeLight *light, const MediaLobes *
                        const MediaProfile *profile, const Interiors *inside, const Ray *ray);
 
 /* Add the light of the photons in the media along a ray, from t = begin to end, to the parts it
- * belongs to. */
+ * belongs to; `ends` are the surfaces there. */
 void media_photons(EyeThread *eye, const MediaHere *here, const MediaProfile *profile,
-                   const Ray *ray, double begin, double end, Rgb light[PART_COUNT]);
+                   const Ray *ray, double begin, double end, const AirEnds *ends,
+                   Rgb light[PART_COUNT]);
 
 /* The part of a ray, from begin to end, on which a light can shine; returns false if none is. */
 bool light_stretch(const Light *light, const Ray *ray, double *begin, double *end);

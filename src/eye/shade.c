@@ -16,6 +16,8 @@ enum { PATH_SURFACES_MAX = 10000 };
 /* A ray on its way, and what became of it so far. */
 typedef struct Path {
     Ray ray;
+    const Object *from; /* whose surface it comes from; NULL: none */
+    V3 from_normal;     /* unit, of that surface */
     RayKind kind;
     int level;        /* rays traced up to here that count */
     float weight;     /* the largest share of the picture it can still have */
@@ -80,6 +82,8 @@ static void reflect_layer(EyeThread *eye, const Path *path, const SurfaceSample 
         return;
     Path mirrored;
     mirrored.ray = trace_ray_from(&s->at, layer->reflect_dir);
+    mirrored.from = path->from;
+    mirrored.from_normal = s->ng;
     mirrored.kind = RAY_REFLECTED;
     mirrored.level = path->level;
     mirrored.weight = weight;
@@ -123,6 +127,7 @@ static bool go_on(EyeThread *eye, Path *path, const SurfaceSample *s)
         return false;
     path->is_straight = s->is_straight && !s->is_total_reflection;
     path->ray = trace_ray_from(&s->at, s->transmit_dir);
+    path->from_normal = s->ng;
     return true;
 }
 
@@ -164,11 +169,16 @@ static void add_surface(EyeThread *eye, const Path *path, const SurfaceSample *s
         add_reflections(eye, path, s, out);
 }
 
-/* What the path sees through from here on lies behind the air along its ray. */
-static void add_air(EyeThread *eye, Path *path, double length, Radiance *out)
+/* What the path sees through from here on lies behind the air along its ray.
+ *
+ * hit  what the ray meets; NULL: nothing. */
+static void add_air(EyeThread *eye, Path *path, const Hit *hit, Radiance *out)
 {
     Veil veil;
-    air_along(eye, &path->ray, length, &path->inside, AIR_SEEN, &veil);
+    AirEnds ends = {.planes.begin = path->from_normal, .from = path->from};
+    if (hit)
+        ends.planes.end = hit->point.ng;
+    air_between(eye, &path->ray, hit ? hit->t : INFINITY, &ends, &path->inside, AIR_SEEN, &veil);
     for (int i = 0; i < PART_COUNT; i++)
         add_part(out, (LightPart)i, path->through, veil.light[i]);
     path->through = rgb_mul(path->through, veil.through);
@@ -210,7 +220,7 @@ static void radiance(EyeThread *eye, Path *path, Radiance *out, EyeSample *first
         Hit hit;
         bool is_met = trace_closest(&eye->trace, &path->ray, path->kind, &hit);
         if (eye->has_air)
-            add_air(eye, path, is_met ? hit.t : INFINITY, out);
+            add_air(eye, path, is_met ? &hit : NULL, out);
         if (!is_met) {
             float behind;
             Rgb sky = sky_light(eye, path->ray.d, path->is_mirrored, &behind);
@@ -224,6 +234,7 @@ static void radiance(EyeThread *eye, Path *path, Radiance *out, EyeSample *first
             path->level++;
         path->through = rgb_mul(path->through, interiors_fade(&path->inside, hit.t));
         surface_sample(&eye->trace, &path->ray, &hit, &path->inside, &s);
+        path->from = hit.object;
         if (first && surfaces == 0)
             describe_first(&hit, &s, first);
         add_surface(eye, path, &s, out);

@@ -11,11 +11,16 @@
 
 enum { STACK_MAX = 80, CHUNK_BLOCKS = 64 };
 
+/* Planes at the ends of a ray count as no steeper than this: rise of the place where a ray beside
+ * it meets them over the way beside. */
+#define STEEP_MOST 8
+
 /* Rounding of where a ray enters and leaves a box. */
 #define BOX_SLACK 0x1p-20f
 
 typedef struct VolumeBox {
     float lo[3], hi[3]; /* relative to the map's centre */
+    float radius;       /* of the largest ball */
 } VolumeBox;
 
 struct VolumeIndex {
@@ -76,7 +81,7 @@ static void find_radii(void *ctx, size_t chunk, int thread)
 
 static VolumeBox block_box(const PhotonBlock *block, float radius)
 {
-    VolumeBox box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    VolumeBox box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, radius};
     for (int i = 0; i < BLOCK_PHOTONS; i++)
         for (int axis = 0; axis < 3; axis++) {
             float x = block->pos[axis][i];
@@ -101,6 +106,7 @@ static void fill_boxes(VolumeIndex *index)
             index->boxes[node].lo[axis] = fminf(a->lo[axis], b->lo[axis]);
             index->boxes[node].hi[axis] = fmaxf(a->hi[axis], b->hi[axis]);
         }
+        index->boxes[node].radius = fmaxf(a->radius, b->radius);
     }
 }
 
@@ -165,11 +171,27 @@ typedef struct VolumeQuery {
     float o[3], d[3]; /* the ray, relative to the map's centre, from its point nearest to it */
     float over[3];    /* 1/d */
     float begin, end; /* t from there */
+    float begin_slope[3], end_slope[3]; /* how these change with the place beside the ray */
+    float begin_steep, end_steep;       /* the lengths of these */
     void (*visit)(void *ctx, const VolumePhoton *photon);
     void *ctx;
 } VolumeQuery;
 
-static VolumeQuery make_query(const VolumeIndex *index, const Ray *ray, double length)
+/* Return how the place where parallel rays cut a plane changes with the place beside the ray. */
+static float plane_slope(const Ray *ray, V3 normal, float out[3])
+{
+    double cosine = v3_dot(normal, ray->d);
+    V3 across = v3_mad(normal, -cosine, ray->d);
+    double length = v3_len(across), steep = length / fmax(fabs(cosine), length / STEEP_MOST);
+    V3 slope = length > 0 ? v3_scale(across, -copysign(steep / length, cosine)) : across;
+    out[0] = (float)slope.x;
+    out[1] = (float)slope.y;
+    out[2] = (float)slope.z;
+    return length > 0 ? (float)steep : 0;
+}
+
+static VolumeQuery make_query(const VolumeIndex *index, const Ray *ray, double length,
+                              const VolumeEnds *ends)
 {
     V3 to = v3_sub(index->map->center, ray->o);
     VolumeQuery query = {.index = index, .ray = ray, .shift = v3_dot(to, ray->d)};
@@ -182,12 +204,15 @@ static VolumeQuery make_query(const VolumeIndex *index, const Ray *ray, double l
     }
     query.begin = (float)-query.shift;
     query.end = (float)(length - query.shift);
+    query.begin_steep = plane_slope(ray, ends->begin, query.begin_slope);
+    query.end_steep = plane_slope(ray, ends->end, query.end_slope);
     return query;
 }
 
 static bool is_cut(const VolumeQuery *query, const VolumeBox *box)
 {
-    float near = query->begin, far = query->end;
+    float near = query->begin - query->begin_steep * box->radius;
+    float far = query->end + query->end_steep * box->radius;
     for (int axis = 0; axis < 3; axis++) {
         float a = (box->lo[axis] - query->o[axis]) * query->over[axis];
         float b = (box->hi[axis] - query->o[axis]) * query->over[axis];
@@ -198,14 +223,19 @@ static bool is_cut(const VolumeQuery *query, const VolumeBox *box)
     return near - far <= BOX_SLACK * (fabsf(near) + fabsf(far));
 }
 
-static void visit_photon(const VolumeQuery *query, const PhotonBlock *block, int i, double t,
-                         float kernel)
+static void visit_photon(const VolumeQuery *query, const PhotonBlock *block, int i, float along,
+                         float way, float kernel)
 {
     uint32_t rgbe = block->rgbe[i];
     const uint8_t bytes[4] = {(uint8_t)rgbe, (uint8_t)(rgbe >> 8), (uint8_t)(rgbe >> 16),
                               (uint8_t)(rgbe >> 24)};
     uint16_t from = block->from[i];
-    VolumePhoton photon = {.t = t,
+    float away[3];
+    for (int axis = 0; axis < 3; axis++)
+        away[axis] = block->pos[axis][i] - query->o[axis] - along * query->d[axis];
+    VolumePhoton photon = {.t = (double)along + query->shift,
+                           .way = (double)way,
+                           .aside = {(double)away[0], (double)away[1], (double)away[2]},
                            .from = direction_decode((uint8_t)from, (uint8_t)(from >> 8)),
                            .power = rgb_scale(rgbe_decode(bytes), kernel),
                            .is_focused = block->flags[i] == PHOTON_FOCUSED};
@@ -218,7 +248,8 @@ static void visit_block(const VolumeQuery *query, uint32_t number)
     const PhotonBlock *block = &query->index->map->blocks[number];
     float radius2 = query->index->radius[number] * query->index->radius[number];
     float over2 = 1 / radius2, most = 2 / (float)PMS_PI * over2;
-    float along[BLOCK_PHOTONS], away2[BLOCK_PHOTONS];
+    float along[BLOCK_PHOTONS], away2[BLOCK_PHOTONS], way[BLOCK_PHOTONS], left[BLOCK_PHOTONS];
+    const float *begin = query->begin_slope, *end = query->end_slope;
     for (int i = 0; i < BLOCK_PHOTONS; i++) {
         float x = block->pos[0][i] - query->o[0], y = block->pos[1][i] - query->o[1];
         float z = block->pos[2][i] - query->o[2];
@@ -226,19 +257,21 @@ static void visit_block(const VolumeQuery *query, uint32_t number)
         float ax = x - along[i] * query->d[0], ay = y - along[i] * query->d[1];
         float az = z - along[i] * query->d[2];
         away2[i] = ax * ax + ay * ay + az * az;
+        way[i] = along[i] - (query->begin + ax * begin[0] + ay * begin[1] + az * begin[2]);
+        left[i] = query->end + ax * end[0] + ay * end[1] + az * end[2] - along[i];
     }
     for (int i = 0; i < BLOCK_PHOTONS; i++) {
-        if (!(away2[i] < radius2 && along[i] > query->begin && along[i] < query->end))
+        if (!(away2[i] < radius2 && way[i] > 0 && left[i] > 0))
             continue;
         float kernel = most * (1 - away2[i] * over2);
-        visit_photon(query, block, i, (double)along[i] + query->shift, kernel);
+        visit_photon(query, block, i, along[i], way[i], kernel);
     }
 }
 
-void volume_along(const VolumeIndex *index, const Ray *ray, double length,
+void volume_along(const VolumeIndex *index, const Ray *ray, double length, const VolumeEnds *ends,
                   void (*visit)(void *ctx, const VolumePhoton *photon), void *ctx)
 {
-    VolumeQuery query = make_query(index, ray, length);
+    VolumeQuery query = make_query(index, ray, length, ends);
     query.visit = visit;
     query.ctx = ctx;
     const PhotonMap *map = index->map;

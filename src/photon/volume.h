@@ -25,9 +25,16 @@ void volume_index_free(VolumeIndex *index);
 /* Return the radius that fits the middle density of a map, or 0; scene units. */
 double volume_radius(const PhotonMap *map, int nearest);
 
+/* The surfaces that a ray comes from and goes to: unit normals, of either sign; 0: none. */
+typedef struct VolumeEnds {
+    V3 begin, end;
+} VolumeEnds;
+
 /* What a photon gives a ray. */
 typedef struct VolumePhoton {
     double t;     /* along the ray */
+    double way;   /* how far it lies from the surface the ray comes from */
+    V3 aside;     /* from the ray to it */
     V3 from;      /* unit, to where it came from */
     Rgb power;    /* flux times length over volume, integrated over the ray: irradiance across the
                      photon's way times length */
@@ -35,8 +42,13 @@ typedef struct VolumePhoton {
 } VolumePhoton;
 
 /* Hand all photons that a ray cuts between t = 0 and `length` to `visit`, in the order of the
- * tree.  Any thread. */
-void volume_along(const VolumeIndex *index, const Ray *ray, double length,
+ * tree.
+ *
+ * A photon beside the ray speaks for the parallel ray through it: whether it is between the ends,
+ * and how far from the begin, goes by where that one meets the surfaces there, taken as planes.
+ *
+ * Any thread. */
+void volume_along(const VolumeIndex *index, const Ray *ray, double length, const VolumeEnds *ends,
                   void (*visit)(void *ctx, const VolumePhoton *photon), void *ctx);
 
 #endif
