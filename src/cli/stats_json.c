@@ -47,6 +47,8 @@ static void print_book(FILE *file, const LightBooks *book)
     print_flux(file, "flux_absorbed", book->flux_absorbed);
     print_flux(file, "flux_escaped", book->flux_escaped);
     print_flux(file, "flux_cut", book->flux_cut);
+    print_flux(file, "balance", book->balance);
+    print_flux(file, "balance_error", book->balance_error);
     fputc('}', file);
 }
 

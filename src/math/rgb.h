@@ -43,6 +43,12 @@ static inline float rgb_sum(Rgb a) { return a.r + a.g + a.b; }
 /* Return the largest magnitude of the channels. */
 static inline float rgb_max_abs(Rgb a) { return fmaxf(fabsf(a.r), fmaxf(fabsf(a.g), fabsf(a.b))); }
 
+/* Return the root of the sum of the squares, as standard errors add up. */
+static inline Rgb rgb_hypot(Rgb a, Rgb b)
+{
+    return rgb(hypotf(a.r, b.r), hypotf(a.g, b.g), hypotf(a.b, b.b));
+}
+
 /* Return the language's grey value of a colour. */
 static inline float rgb_grey(Rgb a) { return 0.297f * a.r + 0.589f * a.g + 0.114f * a.b; }
 

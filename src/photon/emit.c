@@ -25,6 +25,7 @@ typedef struct Chunk {
     PhotonList photons;
     uint64_t ends[PATH_END_COUNT];
     FluxSum emitted, left[PATH_END_COUNT];
+    FluxSum off, off2; /* what the photons' balances differ from 1 by, and the squares of that */
 } Chunk;
 
 typedef struct EmitWork {
@@ -66,6 +67,11 @@ static void emit_photon(Emission *emission, TraceThread *thread, Chunk *chunk, u
         return;
     flux_add(&chunk->emitted, result.emitted);
     flux_add(&chunk->left[result.end], result.left);
+    if (is_lit) {
+        Rgb off = rgb_sub(result.balance, RGB_WHITE);
+        flux_add(&chunk->off, off);
+        flux_add(&chunk->off2, rgb_mul(off, off));
+    }
 }
 
 static void emit_chunk(void *ctx, size_t index, int thread)
@@ -108,6 +114,19 @@ static void add_rgb(Rgb *sum, const FluxSum *flux)
     *sum = rgb_add(*sum, flux_rgb(flux));
 }
 
+/* Add to the mean balance of the books: before they had `emitted` photons. */
+static void add_balance(LightBooks *books, const Chunk *chunk)
+{
+    double before = (double)books->emitted, all = before + chunk->sent;
+    float *mean[3] = {&books->balance.r, &books->balance.g, &books->balance.b};
+    float *error[3] = {&books->balance_error.r, &books->balance_error.g, &books->balance_error.b};
+    for (int c = 0; c < 3 && all > 0; c++) {
+        double sum = (double)*mean[c] * before + chunk->off.rgb[c] + chunk->sent;
+        *mean[c] = (float)(sum / all);
+        *error[c] = (float)(hypot((double)*error[c] * before, sqrt(chunk->off2.rgb[c])) / all);
+    }
+}
+
 /* What a path had less than it started with was absorbed on the way. */
 static void keep_books(LightBooks *books, const Chunk *chunk)
 {
@@ -116,6 +135,7 @@ static void keep_books(LightBooks *books, const Chunk *chunk)
         for (int c = 0; c < 3; c++)
             if (end != PATH_ABSORBED)
                 absorbed.rgb[c] -= chunk->left[end].rgb[c];
+    add_balance(books, chunk);
     books->emitted += chunk->sent;
     books->stored_paths += chunk->ends[PATH_STORED];
     books->absorbed += chunk->ends[PATH_ABSORBED];

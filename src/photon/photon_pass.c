@@ -124,8 +124,21 @@ static LightBooks **books_of(PhotonBooks *books, MapKind kind)
 }
 
 /* Add up the books of two kinds of photons in one map. */
+/* The balance of all photons of two books. */
+static void join_balance(LightBooks *to, const LightBooks *from)
+{
+    float all = (float)to->emitted + (float)from->emitted;
+    if (!(all > 0))
+        return;
+    float part = (float)from->emitted / all;
+    to->balance = rgb_lerp(to->balance, from->balance, part);
+    to->balance_error =
+        rgb_hypot(rgb_scale(to->balance_error, 1 - part), rgb_scale(from->balance_error, part));
+}
+
 static void join_books(LightBooks *to, const LightBooks *from)
 {
+    join_balance(to, from);
     to->power += from->power;
     to->budget += from->budget;
     to->emitted += from->emitted;
@@ -336,6 +349,7 @@ static Rgb mean_flux(Rgb mean, Rgb value, uint64_t before)
 
 static void add_book(LightBooks *to, const LightBooks *from, uint64_t before)
 {
+    join_balance(to, from);
     to->power = mean_of(to->power, from->power, before);
     to->share = mean_of(to->share, from->share, before);
     to->budget += from->budget;

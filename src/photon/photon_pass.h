@@ -26,6 +26,9 @@ typedef struct LightBooks {
     uint64_t budget, emitted, stored_paths, absorbed, escaped, cut;
     uint64_t stored; /* photons */
     Rgb flux_emitted, flux_stored, flux_absorbed, flux_escaped, flux_cut;
+    /* What the photons lost to surfaces and ways, as their reflectances say, and what the dice left
+     * them, as shares of what each started with: 1 but for chance, and its standard error. */
+    Rgb balance, balance_error;
 } LightBooks;
 
 typedef struct PhotonBooks {

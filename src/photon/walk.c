@@ -17,6 +17,8 @@ typedef struct Walk {
     Interiors inside;
     double length;      /* gone in all up to the last surface */
     Rgb weight;         /* share of the light that is left */
+    Rgb lost;           /* share that was absorbed, until the path is settled */
+    bool is_settled;    /* the books know what became of it: it came to a place to be stored at */
     Rgb flux;           /* of a weight of 1 at flux_length; fixed at the first diffuse surface */
     double flux_length; /* negative: not known yet */
     int level;
@@ -58,6 +60,25 @@ static Rgb flux_here(Walk *walk)
         walk->flux_length = walk->length;
     }
     return walk->flux;
+}
+
+/* Multiply the weight by what a surface or a way lets go on of it. */
+static void weaken(Walk *walk, Rgb share)
+{
+    Rgb rest = rgb_mul(walk->weight, share);
+    walk->lost = rgb_add(walk->lost, rgb_sub(walk->weight, rest));
+    walk->weight = rest;
+}
+
+/* Close the books on the path: it began with a flux of `emitted` and has this share of it left. */
+static void settle(Walk *walk, Rgb emitted, Rgb share, WalkResult *result)
+{
+    if (walk->is_settled)
+        return;
+    walk->is_settled = true;
+    result->emitted = emitted;
+    result->left = rgb_mul(emitted, share);
+    result->balance = rgb_add(walk->lost, share);
 }
 
 /* --- the roulette ----------------------------------------------------------------------- */
@@ -148,19 +169,21 @@ static bool make_room(PhotonList *list)
     return list->count < list->capacity;
 }
 
-/* Keep a photon; one of little power with the chance that makes up for more. */
-static bool store(Walk *walk, V3 p, V3 from, unsigned flags, Rgb power, float least,
-                  PhotonList *out)
+/* Return how many times its power a photon is to have: of little power 0 but for the chance that
+ * makes up for more. */
+static float thin_out(Walk *walk, Rgb power, float least)
 {
     float most = rgb_max(power);
     if (!(most > 0) || !rgb_is_finite(power))
-        return false;
-    if (most < least) {
-        if (rng_float(walk->rng) * least >= most)
-            return false;
-        power = rgb_scale(power, least / most);
-    }
-    if (!make_room(out))
+        return 0;
+    if (most >= least)
+        return 1;
+    return rng_float(walk->rng) * least < most ? least / most : 0;
+}
+
+static bool store(Walk *walk, V3 p, V3 from, unsigned flags, Rgb power, PhotonList *out)
+{
+    if (!(rgb_max(power) > 0) || !rgb_is_finite(power) || !make_room(out))
         return false;
     V3 at = v3_sub(p, walk->rules->center);
     Photon *photon = &out->items[out->count++];
@@ -203,13 +226,14 @@ static bool is_kept(const Walk *walk, const Hit *hit)
 /* Keep the photon where it hits a surface. */
 static void keep(Walk *walk, const Hit *hit, float least, PhotonList *out, WalkResult *result)
 {
-    Rgb power = rgb_mul(flux_here(walk), walk->weight);
+    Rgb flux = flux_here(walk), power = rgb_mul(flux, walk->weight);
     bool is_inside = v3_dot(hit->point.ng, walk->ray.d) > 0;
     V3 ng = is_inside ? v3_neg(hit->point.ng) : hit->point.ng;
     unsigned normal = (unsigned)normal14_encode(ng) << 2;
-    if (store(walk, hit->point.p, v3_neg(walk->ray.d), normal, power, least, out) &&
-        result->stored++ == 0)
-        result->left = power;
+    float times = thin_out(walk, power, least);
+    settle(walk, flux, rgb_scale(walk->weight, times), result);
+    result->stored +=
+        store(walk, hit->point.p, v3_neg(walk->ray.d), normal, rgb_scale(power, times), out);
 }
 
 /* --- the way ---------------------------------------------------------------------------- */
@@ -235,7 +259,7 @@ static void leave(Walk *walk, const SurfaceSample *s, V3 d, bool is_straight)
 /* Pass an object that photons do not see, straight on. */
 static void pass_through(Walk *walk, const SurfaceSample *s)
 {
-    walk->weight = rgb_mul(walk->weight, s->has_transmission ? not_negative(s->filter) : RGB_BLACK);
+    weaken(walk, s->has_transmission ? not_negative(s->filter) : RGB_BLACK);
     if (s->has_transmission && !s->is_total_reflection)
         walk->inside = s->inside_after;
     leave(walk, s, walk->ray.d, true);
@@ -346,10 +370,10 @@ static Rgb flux_at(Walk *walk, double length)
 static void store_stop(Walk *walk, const MediaLeg *leg, PhotonList *out, WalkResult *result)
 {
     unsigned flags = walk->rules->map == MAP_FOCUS ? PHOTON_FOCUSED : 0;
-    Rgb flux = rgb_mul(flux_at(walk, walk->length + leg->stop), walk->weight);
+    Rgb flux = flux_at(walk, walk->length + leg->stop), power = rgb_mul(flux, leg->power);
     V3 p = ray_at(&walk->ray, leg->stop), from = v3_neg(walk->ray.d);
-    if (store(walk, p, from, flags, rgb_mul(flux, leg->power), 0, out) && result->stored++ == 0)
-        result->left = flux;
+    settle(walk, flux, walk->weight, result);
+    result->stored += store(walk, p, from, flags, rgb_mul(power, walk->weight), out);
 }
 
 /* Cross the media up to the next surface; returns true when the photon was scattered on the way.
@@ -366,7 +390,7 @@ static bool cross_media(Walk *walk, double length, PhotonList *out, WalkResult *
         return false;
     if (leg.has_stop)
         store_stop(walk, &leg, out, result);
-    walk->weight = rgb_mul(walk->weight, leg.weight);
+    weaken(walk, leg.weight);
     if (!leg.is_scattered)
         return false;
     walk->length += leg.t;
@@ -407,7 +431,8 @@ static Step advance(Walk *walk, Hit *hit, PhotonList *out, WalkResult *result)
     }
     if (!walk->is_straight)
         walk->level++;
-    walk->weight = rgb_mul(walk->weight, interiors_fade(&walk->inside, hit->t));
+    if (walk->inside.count > 0)
+        weaken(walk, interiors_fade(&walk->inside, hit->t));
     return STEP_SURFACE;
 }
 
@@ -416,6 +441,16 @@ static bool is_over_limit(const Walk *walk)
 {
     return walk->level >= walk->rules->max_level || walk->diffuse > most_diffuse(walk) ||
            !(rgb_max(walk->weight) >= walk->rules->adc_bailout);
+}
+
+/* What no branch sends on is absorbed, whatever the dice say. */
+static void note_loss(Walk *walk, const Roulette *r)
+{
+    Rgb on = rgb_add(r->reflect, r->transmit);
+    if (!map_is_aimed(walk->rules->map))
+        on = rgb_mad(on, walk->rules->brightness, rgb_add(r->diffuse, r->back));
+    Rgb off = rgb(1 - on.r, 1 - on.g, 1 - on.b);
+    walk->lost = rgb_add(walk->lost, rgb_mul(walk->weight, off));
 }
 
 static bool is_beyond_reach(const Walk *walk, const SurfaceSample *s)
@@ -436,14 +471,20 @@ static bool is_last(const Walk *walk, const Hit *hit)
            !hit->surface->photons.is_pass_through;
 }
 
+/* Absorb what is left. */
+static void absorb(Walk *walk, WalkResult *result)
+{
+    weaken(walk, RGB_BLACK);
+    result->end = PATH_ABSORBED;
+}
+
 /* Meet a surface where the path ends. */
 static void end_on_surface(Walk *walk, const Hit *hit, float least, PhotonList *out,
                            WalkResult *result)
 {
     if (is_kept(walk, hit))
         keep(walk, hit, least, out, result);
-    result->end = PATH_ABSORBED;
-    walk->weight = RGB_BLACK;
+    absorb(walk, result);
 }
 
 /* Store what is to be stored and throw the dice; returns false when the path ends here. */
@@ -458,9 +499,10 @@ static bool meet_surface(Walk *walk, const Hit *hit, const SurfaceSample *s, flo
     }
     if (is_diffuse(&roulette) && is_kept(walk, hit))
         keep(walk, hit, least, out, result);
+    note_loss(walk, &roulette);
     if (!follow(walk, hit, s, &roulette, spin(walk, &roulette))) {
-        result->end = PATH_ABSORBED;
         walk->weight = RGB_BLACK;
+        result->end = PATH_ABSORBED;
         return false;
     }
     result->end = PATH_CUT;
@@ -502,11 +544,9 @@ void photon_walk(TraceThread *thread, const WalkRules *rules, const Beam *beam,
         }
     }
     arena_reset(thread->scratch);
-    result->emitted = flux_here(&walk);
+    settle(&walk, flux_here(&walk), walk.weight, result);
     if (result->stored > 0)
         result->end = PATH_STORED;
-    else
-        result->left = rgb_mul(result->emitted, walk.weight);
 }
 
 Rgb photon_scout(TraceThread *thread, const WalkRules *rules, const Beam *beam,

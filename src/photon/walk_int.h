@@ -59,8 +59,10 @@ typedef struct WalkRules {
 typedef struct WalkResult {
     PathEnd end;
     int stored;  /* photons */
-    Rgb emitted; /* flux it started with, as measured where it ended */
-    Rgb left;    /* flux it had there (when first stored, for PATH_STORED) */
+    Rgb emitted; /* flux it started with, as measured where it was first stored, or ended */
+    Rgb left;    /* flux it had there */
+    Rgb balance; /* shares of what it started with: those that surfaces absorbed up to there, as
+                    their reflectances say, and what the dice left; 1 in the mean over photons */
 } WalkResult;
 
 /* What media do to a photon between two surfaces. */

@@ -29,6 +29,19 @@ static inline void lit_listen(void *ctx, const char *text)
     snprintf(lit->messages + used, sizeof lit->messages - used, "%s", text);
 }
 
+/* Make plan and tracer of a scene that was read. */
+static inline void lit_prepare(LitScene *lit, Status status, int threads, uint64_t seed,
+                               PlanOptions plan_options)
+{
+    if (status != OK)
+        print_message("%s", lit->messages);
+    assert_int_equal(status, OK);
+    assert_int_equal(plan_make(lit->scene, &plan_options, lit->scene->arena, &lit->plan), OK);
+    assert_int_equal(tracer_new(lit->scene, &lit->plan, 1, &lit->diag, &lit->tracer), OK);
+    lit->options = (PhotonOptions){.seed = seed, .threads = threads};
+    lit->scratch = gather_scratch_new();
+}
+
 /* Read a scene and make its plan and tracer. */
 static inline void lit_read_as(LitScene *lit, const char *text, int threads, uint64_t seed,
                                PlanOptions plan_options)
@@ -38,13 +51,7 @@ static inline void lit_read_as(LitScene *lit, const char *text, int threads, uin
     SdlOptions options = {.width = 320, .height = 240, .threads = 1};
     Status status =
         sdl_load_text(&lit->diag, "test.pms", text, strlen(text), &options, &lit->scene);
-    if (status != OK)
-        print_message("%s", lit->messages);
-    assert_int_equal(status, OK);
-    assert_int_equal(plan_make(lit->scene, &plan_options, lit->scene->arena, &lit->plan), OK);
-    assert_int_equal(tracer_new(lit->scene, &lit->plan, 1, &lit->diag, &lit->tracer), OK);
-    lit->options = (PhotonOptions){.seed = seed, .threads = threads};
-    lit->scratch = gather_scratch_new();
+    lit_prepare(lit, status, threads, seed, plan_options);
 }
 
 static inline void lit_read(LitScene *lit, const char *text, int threads, uint64_t seed)
@@ -57,6 +64,20 @@ static inline void lit_make(LitScene *lit, const char *text, int threads, uint64
 {
     lit_read(lit, text, threads, seed);
     Status status = photon_pass(lit->tracer, &lit->options, &lit->diag, &lit->stats, &lit->maps);
+    assert_int_equal(status, OK);
+}
+
+/* Read a scene file and run its photon pass. */
+static inline void lit_make_file(LitScene *lit, const char *path, int threads, uint64_t seed)
+{
+    memset(lit, 0, sizeof *lit);
+    diag_init(&lit->diag, lit_listen, lit);
+    static const char *const library = "stdlib";
+    SdlOptions options = {
+        .library_paths = &library, .library_path_count = 1, .width = 320, .height = 240, .threads = 1};
+    Status status = sdl_load(&lit->diag, path, &options, &lit->scene);
+    lit_prepare(lit, status, threads, seed, PLAN_OPTIONS_DEFAULT);
+    status = photon_pass(lit->tracer, &lit->options, &lit->diag, &lit->stats, &lit->maps);
     assert_int_equal(status, OK);
 }
 
