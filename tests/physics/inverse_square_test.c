@@ -10,6 +10,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "table.h"
+
 static Light small_light(V3 location)
 {
     return (Light){.kind = LIGHT_POINT,
@@ -49,6 +51,23 @@ static void test_cosine(void **state)
     }
 }
 
+/* A point light at height h over a plane: irradiance falls as h / (h^2 + r^2)^(3/2). */
+static void test_plane(void **state)
+{
+    (void)state;
+    const double h = 1.5;
+    Light light = small_light(v3(0, h, 0));
+    double below = irradiance(&light, v3(0, 0, 0), v3(0, 1, 0));
+    for (int r = 1; r <= 5; r += 2) {
+        char what[64];
+        double seen = irradiance(&light, v3(r, 0, 0), v3(0, 1, 0)) / below;
+        double expected = h * h * h / pow(h * h + r * r, 1.5);
+        snprintf(what, sizeof what, "point light over a plane, %d from below it", r);
+        table_row(what, seen, expected, 0);
+        assert_true(fabs(seen / expected - 1) < 2e-6);
+    }
+}
+
 /* The flux into a box around the light, by the midpoint rule on its faces. */
 static double flux_into_box(const Light *light, V3 half)
 {
@@ -84,6 +103,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_ratio),
         cmocka_unit_test(test_cosine),
+        cmocka_unit_test(test_plane),
         cmocka_unit_test(test_flux_is_the_same_through_every_box),
     };
     return cmocka_run_group_tests_name("inverse_square", tests, NULL, NULL);
