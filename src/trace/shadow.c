@@ -21,6 +21,7 @@ typedef struct ShadowQuery {
     TraceThread *thread;
     const Tracer *tracer;
     const Light *light; /* NULL: none in particular */
+    int light_index;
     bool blocks_targets;
     uint32_t blocker;
     int count, capacity;
@@ -265,13 +266,21 @@ static void advance(ShadowQuery *query, int i, const Ray *ray, double t)
         query->filters[i] = query->filters[--query->count];
 }
 
+/* Return what the last leg lets through: the light may stand in something, and the ray have begun
+ * in that. */
+static Rgb end_last_leg(const ShadowQuery *query, const Ray *ray, const Legs *legs)
+{
+    double length = ray->tmax - legs->since;
+    if (legs->inside.count > 0)
+        return absorbed(&legs->inside, length);
+    const Interior *interior = query->tracer->light_interiors[query->light_index];
+    return interior ? interior_fade(interior, legs->open + length, true) : RGB_WHITE;
+}
+
 /* Visit the crossings of the noted objects in order of t; at equal t in written order. */
-static Rgb walk_filters(ShadowQuery *query, const Ray *ray)
+static Rgb walk_filters(ShadowQuery *query, const Ray *ray, Legs *legs)
 {
     Rgb light = RGB_WHITE;
-    Legs legs;
-    legs.inside.count = 0;
-    legs.since = legs.open = 0;
     bool absorbs = plan_has(query->tracer->plan, FEATURE_ABSORPTION);
     for (int i = query->count - 1; i >= 0; i--)
         advance(query, i, ray, ray->tmin);
@@ -285,12 +294,26 @@ static Rgb walk_filters(ShadowQuery *query, const Ray *ray)
         Filter *filter = &query->filters[nearest];
         light = rgb_mul(light, crossing_filter(query, filter, ray));
         if (absorbs)
-            light = rgb_mul(light, end_leg(query, filter, ray, &legs));
+            light = rgb_mul(light, end_leg(query, filter, ray, legs));
         advance(query, nearest, ray, filter->next.t);
     }
-    if (legs.inside.count > 0) /* the light stands in something */
-        light = rgb_mul(light, absorbed(&legs.inside, ray->tmax - legs.since));
     return light;
+}
+
+/* Return what passes the noted objects. */
+static Rgb pass_filters(ShadowQuery *query, const Ray *ray)
+{
+    Legs legs;
+    legs.inside.count = 0;
+    legs.since = legs.open = 0;
+    Rgb passed = RGB_WHITE;
+    if (query->count > 0) {
+        query->thread->stats.count[STAT_SHADOW_FILTER_WALKS]++;
+        passed = walk_filters(query, ray, &legs);
+    }
+    if (query->light && plan_has(query->tracer->plan, FEATURE_ABSORPTION))
+        passed = rgb_mul(passed, end_last_leg(query, ray, &legs));
+    return passed;
 }
 
 /* The parts of the distance to the light within which a hit is the light's own surface: the
@@ -309,6 +332,7 @@ Rgb trace_shadow_of(TraceThread *thread, const ShadowBundle *bundle, const Shape
     query.thread = thread;
     query.tracer = thread->tracer;
     query.light = light >= 0 ? &thread->tracer->scene->lights[light] : NULL;
+    query.light_index = light;
     query.blocks_targets = blocks_targets;
     query.count = 0;
     query.capacity = FILTERS_FEW;
@@ -320,11 +344,7 @@ Rgb trace_shadow_of(TraceThread *thread, const ShadowBundle *bundle, const Shape
             thread->blockers[light] = query.blocker;
         return RGB_BLACK;
     }
-    Rgb passed = RGB_WHITE;
-    if (query.count > 0) {
-        thread->stats.count[STAT_SHADOW_FILTER_WALKS]++;
-        passed = walk_filters(&query, &ray);
-    }
+    Rgb passed = pass_filters(&query, &ray);
     bool is_dimmed = thread->is_dimmed || (query.light && query.light->is_dimmed_by_media);
     if (thread->tracer->media_count > 0 && !rgb_is_black(passed))
         passed = rgb_mul(passed, media_shadow(thread, &ray, is_dimmed));

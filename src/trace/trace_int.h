@@ -51,6 +51,7 @@ struct Tracer {
     ViewIndex **light_views; /* per light; NULL: none */
     Bound bound;
     bool has_dispersion;
+    const Interior **light_interiors; /* per light: what it stands in, NULL: nothing that absorbs */
 };
 
 enum { NO_OBJECT = UINT32_MAX };

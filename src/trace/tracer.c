@@ -208,6 +208,20 @@ done:
     return status;
 }
 
+/* Find what absorbs the light of lamps right where they stand. */
+static void find_light_interiors(Tracer *tracer)
+{
+    if (!plan_has(tracer->plan, FEATURE_ABSORPTION))
+        return;
+    for (int i = 0; i < tracer->scene->light_count; i++) {
+        const Light *light = &tracer->scene->lights[i];
+        Interiors inside;
+        interiors_at(tracer, light->location, &inside);
+        if (inside.count > 0 && !light->is_parallel && light->kind != LIGHT_CYLINDER)
+            tracer->light_interiors[i] = inside.in[inside.count - 1];
+    }
+}
+
 Status tracer_new(const Scene *scene, const Plan *plan, int threads, Diag *diag, Tracer **out)
 {
     *out = NULL;
@@ -223,13 +237,16 @@ Status tracer_new(const Scene *scene, const Plan *plan, int threads, Diag *diag,
     tracer->light_views = mem_array((size_t)scene->light_count + 1, sizeof *tracer->light_views);
     tracer->media = mem_array((size_t)scene->object_count + 1, sizeof *tracer->media);
     tracer->solids = mem_array((size_t)scene->object_count + 1, sizeof *tracer->solids);
+    tracer->light_interiors =
+        mem_array((size_t)scene->light_count + 1, sizeof *tracer->light_interiors);
     if (!tracer->objects || !tracer->clear || !tracer->media || !tracer->solids ||
-        !tracer->light_views) {
+        !tracer->light_views || !tracer->light_interiors) {
         tracer_free(tracer);
         return diag_no_memory(diag, "the tracer");
     }
     for (uint32_t i = 0; i < scene->object_count; i++)
         describe_object(tracer, i);
+    find_light_interiors(tracer);
     for (int i = 0; i < scene->light_count; i++)
         tracer->bound = bound_add(tracer->bound, scene->lights[i].location);
     if (bound_is_empty(tracer->bound))
@@ -257,6 +274,7 @@ void tracer_free(Tracer *tracer)
     for (int i = 0; tracer->light_views && i < tracer->scene->light_count; i++)
         view_index_free(tracer->light_views[i]);
     mem_free(tracer->light_views);
+    mem_free(tracer->light_interiors);
     mem_free(tracer->index_objects);
     mem_free(tracer->unbounded);
     mem_free(tracer->clear);

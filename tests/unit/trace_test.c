@@ -310,6 +310,16 @@ static void test_absorbing_shadows(void **state)
     ShapePoint before = {.p = {0, 0, 10}, .ng = {0, 0, -1}, .ns = {0, 0, -1}};
     check_rgb(trace_shadow(&w.thread, &before, v3(0, 0, -1), 10, 0, false), 0.90484, 0.90484, 1);
     world_done(&w);
+    /* a lamp in the outer one, seen from there: past the inner one, and through it */
+    world_init(&w);
+    world_add(&w, box(&w, v3(-2, -2, -2), v3(2, 2, 2)), clear(&w), &a);
+    world_add(&w, box(&w, v3(-1, -1, -1), v3(1, 1, 1)), clear(&w), &b);
+    w.lights[0] = (Light){.location = {0, 0, -1.5}};
+    w.lights[1] = (Light){.location = {1.5, 0, -1.5}};
+    world_ready(&w);
+    check_rgb(trace_shadow(&w.thread, &behind, v3(0, 0, -1), 3, 0, false), 0.90484, 0.81873, 1);
+    check_rgb(trace_shadow(&w.thread, &from, v3(0, 0, -1), 1.5, 1, false), 0.86071, 1, 1);
+    world_done(&w);
 }
 
 static void test_opaque_among_filters(void **state)
