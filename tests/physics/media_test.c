@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "lit_scene.h"
+#include "table.h"
 
 #include "eye/eye.h"
 #include "texture/media.h"
@@ -48,7 +49,7 @@ static Look look(const char *text, int samples)
 static void check(const char *what, Look got, double expected, double part)
 {
     double value = (double)got.mean.g;
-    print_message("# %s: %.6g, expected %.6g +- %.2g\n", what, value, expected, got.error);
+    table_row(what, value, expected, got.error);
     assert_true(fabs(value - expected) <= 4 * got.error + part * fabs(expected));
 }
 
@@ -64,7 +65,7 @@ static void beer_lambert_slab(void **state)
     Look got = look(HEAD EYE WHITE "box { <-1,-1,0>, <1,1,1.5> hollow pigment { rgbt 1 }\n"
                                    "  interior { media { absorption <0.2, 1, 3> } } }\n",
                     1);
-    check("absorbing slab", got, exp(-1.5), 1e-6);
+    check("Beer-Lambert, absorbing slab", got, exp(-1.5), 1e-6);
     assert_true(fabs((double)got.mean.r / exp(-0.3) - 1) < 1e-6);
     assert_true(fabs((double)got.mean.b / exp(-4.5) - 1) < 1e-5);
 }
@@ -162,7 +163,7 @@ static void single_scattering_slab(void **state)
         double phase = phase_value((PhaseKind)type, 0.6, -mu);
         double expected = scattering * phase * (1 - exp(-x * d * way)) / (x * way);
         char what[32];
-        snprintf(what, sizeof what, "scattering type %d", type);
+        snprintf(what, sizeof what, "single-scattering slab, type %d", type);
         check(what, look(text, 4000), expected, 0.003);
     }
 }
@@ -194,7 +195,8 @@ static void lamp_in_the_atmosphere(void **state)
                           "media { scattering { 1, 0.05 } absorption 0.03 }\n"
                           "plane { -z, -10 pigment { rgb 0 } finish { ambient 0 diffuse 0 } }\n",
                  asides[i]);
-        check("lamp", look(text, 200), lamp_light(0.08, 0.05, 20, asides[i], 6, 0.1), 0.01);
+        check("lamp in thin smoke", look(text, 200), lamp_light(0.08, 0.05, 20, asides[i], 6, 0.1),
+              0.01);
     }
 }
 
@@ -203,13 +205,13 @@ static void spot_light_in_smoke(void **state)
 {
     (void)state;
     /* Straight down through the ray, 5 above it: half a cone's width is 5 tan(falloff). */
-    check("spot",
+    check("spotlight in smoke",
           look(HEAD EYE "light_source { <0,5,0> 1 spotlight point_at 0 radius 20 falloff 20 }\n"
                         "media { scattering { 1, 0.1 extinction 0 } }\n"
                         "plane { -z, -10 pigment { rgb 0 } finish { ambient 0 diffuse 0 } }\n",
                100),
           0.1 * 10 * tan(20 * PMS_PI / 180), 0.003);
-    check("beam",
+    check("beam in smoke",
           look(HEAD EYE "light_source { <0,5,0> 1 cylinder point_at 0 radius 2 falloff 2 }\n"
                         "media { scattering { 1, 0.1 extinction 0 } }\n"
                         "plane { -z, -10 pigment { rgb 0 } finish { ambient 0 diffuse 0 } }\n",
