@@ -11,6 +11,7 @@ for name in "$@"; do
     [ "$name" = cornell_box ] && size="+W300 +H300"
     aa="+AM2 +A0.05 +R3"
     [ "$name" = macros_loops ] && aa=-A # its focal blur smooths enough
+    [ "$name" = church_window ] && aa="+AM2 +A0.1 +R2" # fine lead all over the window
     picture=scenes/gallery/$name.png
     # shellcheck disable=SC2086
     "$PMS" "scenes/$name.pms" $size $aa -o "$picture" || exit 1
