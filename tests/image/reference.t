@@ -10,8 +10,9 @@ field() { sed -n "1s,^// image: *,,p" "$1" | cut -d';' -f"$2" | sed 's/^ *//'; }
 if [ "$1" = --update ]; then
     shift
     for name in "$@"; do
+        # The header keeps the command line: no path of this machine in it.
         # shellcheck disable=SC2046
-        "$PMS" "tests/image/$name.pms" $(field "tests/image/$name.pms" 1) --half -o "tests/image/$name.exr"
+        "${PMS#"$ROOT"/}" "tests/image/$name.pms" $(field "tests/image/$name.pms" 1) --half -o "tests/image/$name.exr"
     done
     exit
 fi
