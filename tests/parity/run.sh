@@ -49,8 +49,10 @@ is_caustic() { grep -q 'photons *{ *target' "$1"; }
 is_own() { grep -q 'pms *{' "$1"; }
 # photons in media take povray many minutes; it keeps none in the atmosphere
 is_smoke() { grep -q 'photons *{.*media *[1-9]' "$1"; }
-# media for which the scene asks samples: with few povray's shafts are banded
-is_shafts() { grep -q 'media *{.*samples' "$1"; }
+# media for which one of scenes/ asks samples: with few povray's shafts are banded
+is_shafts() {
+    case $1 in scenes/*) grep -q 'media *{.*samples' "$1" ;; *) false ;; esac
+}
 
 # table NAME FILE NOTE: one line of the table from validate's JSON
 table() {
@@ -111,7 +113,15 @@ command -v povray >/dev/null 2>&1 || { echo "1..0 # skip povray is not installed
 if [ $# -gt 0 ]; then
     heading "named scenes"
     for scene in "$@"; do
-        if is_caustic "$scene"; then picture "$scene" caustic; light "$scene"; else picture "$scene" ""; fi
+        if is_caustic "$scene"; then
+            picture "$scene" caustic
+            light "$scene"
+        elif is_shafts "$scene"; then
+            picture "$scene" shafts -A
+            shafts "$scene"
+        else
+            picture "$scene" ""
+        fi
     done
     exit $((failed > 0))
 fi
