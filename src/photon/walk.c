@@ -371,9 +371,10 @@ static void store_stop(Walk *walk, const MediaLeg *leg, PhotonList *out, WalkRes
 {
     unsigned flags = walk->rules->map == MAP_FOCUS ? PHOTON_FOCUSED : 0;
     Rgb flux = flux_at(walk, walk->length + leg->stop), power = rgb_mul(flux, leg->power);
+    Rgb weight = rgb_mul(walk->weight, interiors_fade(&walk->inside, leg->stop));
     V3 p = ray_at(&walk->ray, leg->stop), from = v3_neg(walk->ray.d);
     settle(walk, flux, walk->weight, result);
-    result->stored += store(walk, p, from, flags, rgb_mul(power, walk->weight), out);
+    result->stored += store(walk, p, from, flags, rgb_mul(power, weight), out);
 }
 
 /* Cross the media up to the next surface; returns true when the photon was scattered on the way.
@@ -393,6 +394,7 @@ static bool cross_media(Walk *walk, double length, PhotonList *out, WalkResult *
     weaken(walk, leg.weight);
     if (!leg.is_scattered)
         return false;
+    weaken(walk, interiors_fade(&walk->inside, leg.t));
     walk->length += leg.t;
     flux_here(walk);
     walk->is_diffuse = true;

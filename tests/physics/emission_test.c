@@ -269,7 +269,7 @@ static void photons_carry_the_power_of_their_light(void **state)
 
 #define GRAY_ROOM                                                                                  \
     "sphere { 0, 1 hollow pigment { rgb 1 } finish { ambient 0 diffuse 0.5 } }\n"                  \
-    "global_settings { assumed_gamma 1 max_trace_level 100\n"                                       \
+    "global_settings { assumed_gamma 1 max_trace_level 100\n"                                      \
     "  pms { gi on gi_method map global_photons %d } }\n"
 
 /* Row S3: each photon has its light's power over the number sent, 4 pi c / n from the middle of a
@@ -319,8 +319,7 @@ static void make_lamps(LitScene *lit, int lamps)
     char text[2048] =
         "global_settings { assumed_gamma 1 photons { count 40000 }\n"
         "  pms { gi on gi_method map global_photons 30000 } }\n" SCREEN
-        "box { <-1,-1,-1.1>, <1,1,-1> " PANE
-        " photons { target refraction on collect off } }\n";
+        "box { <-1,-1,-1.1>, <1,1,-1> " PANE " photons { target refraction on collect off } }\n";
     for (int i = 1; i <= lamps; i++) {
         size_t used = strlen(text);
         snprintf(text + used, sizeof text - used, "light_source { <0,0,-3> rgb %d/%d }\n", i,

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "lit_scene.h"
+#include "table.h"
 #include "render/render.h"
 
 enum { SIDE = 24 };
@@ -81,7 +82,7 @@ static void expect_mean(const char *what, const char *text, PlanOptions plan, do
                         double part)
 {
     double error, mean = mean_over_seeds(text, plan, whole, &error);
-    print_message("# %s: %.5f, expected %.5f +- %.5f\n", what, mean, expected, error);
+    table_row(what, mean, expected, error);
     assert_true(fabs(mean / expected - 1) < part);
     assert_true(fabs(mean - expected) < 4 * error + 0.001 * expected);
 }
@@ -118,8 +119,8 @@ static void sphere_with_a_lamp(void **state)
 {
     (void)state;
     const char *text = scene_text("", room("", "light_source { 0 rgb 1 }"));
-    expect_mean("one lamp, gathered", text, by_gather, 1, 0.005);
-    expect_mean("one lamp, cached", text, by_cache, 1, 0.005);
+    expect_mean("closed sphere, one lamp, gathered", text, by_gather, 1, 0.005);
+    expect_mean("closed sphere, one lamp, cached", text, by_cache, 1, 0.005);
 }
 
 /* Light of four lamps off the middle falls unevenly; in a sphere what is reflected is even again:
@@ -141,7 +142,7 @@ static void sphere_with_four_lamps(void **state)
     double sum = 0;
     for (int i = 0; i < SIDE * SIDE; i++)
         sum += (double)layer->pixels[i * layer->channel_count + 1] / (SIDE * SIDE);
-    print_message("# four lamps: indirect %.5f, expected 0.5\n", sum);
+    table_row("closed sphere, four lamps, cached: indirect", sum, 0.5, 0);
     assert_true(fabs(sum / 0.5 - 1) < 0.005);
     picture_done(&picture);
 }
@@ -150,8 +151,8 @@ static void sphere_that_glows(void **state)
 {
     (void)state;
     const char *text = scene_text("", room("emission 0.5", ""));
-    expect_mean("glow, gathered", text, by_gather, 1, 0.005);
-    expect_mean("glow, cached", text, by_cache, 1, 0.005);
+    expect_mean("closed sphere, glow, gathered", text, by_gather, 1, 0.005);
+    expect_mean("closed sphere, glow, cached", text, by_cache, 1, 0.005);
 }
 
 /* Half of what is reflected is mirrored.  A path of light has the same length in reflections
@@ -162,7 +163,7 @@ static void sphere_half_of_mirror(void **state)
     const char *text =
         scene_text("", "sphere { 0, 1 hollow pigment { rgb 1 }\n"
                        "  finish { ambient 0 diffuse 0.25 reflection 0.25 emission 0.5 } }\n");
-    expect_mean("half a mirror, cached", text, by_cache, 1, 0.005);
+    expect_mean("closed sphere, half a mirror, cached", text, by_cache, 1, 0.005);
 }
 
 /* radiosity{}: reflections up to its limit, each with its brightness; ambient before 3.7. */

@@ -202,6 +202,9 @@ static void smoke_in_a_room_agrees_with_photons(void **state)
          "media { scattering { 5, 0.15 eccentricity 0.6 extinction 3 } absorption 0.3 }"},
         {"of extinction 1 and 0", "rgb 1 media_attenuation on",
          "media { scattering { 1, 0.3 } } media { scattering { 4, 0.1 extinction 0 } }"},
+        {"in a body that fades light", "rgb 1 media_attenuation on",
+         "box { -0.99, 0.99 hollow pigment { rgbt 1 } finish { diffuse 0 } interior {\n"
+         "  fade_power 1001 fade_distance 0.7 media { scattering { 1, 0.15 extinction 4 } } } }"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[2048];

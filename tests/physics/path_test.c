@@ -23,7 +23,7 @@ static void sphere_has_radiance_1(void **state)
                              "sphere { 0, 1 hollow pigment { rgb 1 }\n"
                              "  finish { ambient 0.5 diffuse 0.5 } }\n",
                         0, 2000, NULL, NULL);
-    check("sphere", mean.sum, 1, mean.error);
+    check("closed sphere, paths", mean.sum, 1, mean.error);
     check("its direct light", mean.part[PART_DIRECT], 0.5, mean.part_error[PART_DIRECT]);
     check("its caustics", mean.part[PART_CAUSTIC], 0, mean.part_error[PART_CAUSTIC]);
 }
@@ -67,7 +67,7 @@ static void sphere_of_four_lights(void **state)
                              "light_source { <0,-0.3,-0.6>, rgb 0.25 }\n"
                              "sphere { 0, 1 hollow pigment { rgb 1 } finish { diffuse 0.5 } }\n",
                         0, 2000, lamps_expected, &lamps);
-    check("four lights", mean.sum, mean.expected, mean.error);
+    check("closed sphere, four lamps, paths", mean.sum, mean.expected, mean.error);
 }
 
 /* Highlights are for the eye alone. */
@@ -90,7 +90,7 @@ static void sphere_that_glows(void **state)
                              "sphere { 0, 1 hollow pigment { rgb 1 }\n"
                              "  finish { ambient 0 diffuse 0.5 emission 0.5 } }\n",
                         0, 2000, NULL, NULL);
-    check("glowing wall", mean.sum, 1, mean.error);
+    check("closed sphere, glow, paths", mean.sum, 1, mean.error);
     check("its own light", mean.part[PART_DIRECT], 0.5, mean.part_error[PART_DIRECT]);
 }
 
@@ -106,7 +106,7 @@ static void sphere_half_of_mirror(void **state)
                              "sphere { 0, 1 hollow pigment { rgb 1 }\n"
                              "  finish { ambient 0 diffuse 0.25 reflection 0.25 } }\n",
                         0.2, 6000, NULL, NULL);
-    check("half a mirror", mean.sum, 2.0 / 3, mean.error);
+    check("closed sphere, half a mirror, paths", mean.sum, 2.0 / 3, mean.error);
     check("its direct light", mean.part[PART_DIRECT], 1.0 / 3, mean.part_error[PART_DIRECT]);
     check("its caustics", mean.part[PART_CAUSTIC], 1.0 / 9, mean.part_error[PART_CAUSTIC]);
 }
