@@ -84,17 +84,59 @@ static void cut(OpenParts *open, double begin, double end)
     }
 }
 
+typedef struct OpenQuery {
+    TraceThread *thread;
+    const Ray *ray;
+    OpenParts *out;
+} OpenQuery;
+
+static void cut_object(OpenQuery *query, uint32_t object)
+{
+    Stretch stretches[STRETCHES_MAX];
+    if (!query->thread->tracer->objects[object].keeps_air_out)
+        return;
+    int count = object_stretches(query->thread, object, query->ray, true, stretches);
+    for (int i = 0; i < count; i++)
+        if (!stretches[i].interior->is_hollow)
+            cut(query->out, stretches[i].begin, stretches[i].end);
+}
+
+static bool cut_item(void *ctx, uint32_t item, Ray *ray)
+{
+    (void)ray;
+    OpenQuery *query = ctx;
+    cut_object(query, query->thread->tracer->index_objects[item]);
+    return false;
+}
+
+/* In order along the ray, whatever order the index found the solids in. */
+static void sort_parts(OpenParts *open)
+{
+    for (int i = 1; i < open->count; i++)
+        for (int k = i; k > 0 && open->begin[k] < open->begin[k - 1]; k--) {
+            double begin = open->begin[k], end = open->end[k];
+            open->begin[k] = open->begin[k - 1];
+            open->end[k] = open->end[k - 1];
+            open->begin[k - 1] = begin;
+            open->end[k - 1] = end;
+        }
+}
+
 static void find_open(TraceThread *thread, const Ray *ray, OpenParts *out)
 {
     const Tracer *tracer = thread->tracer;
-    Stretch stretches[STRETCHES_MAX];
-    *out = (OpenParts){.count = 1, .end = {ray->tmax}};
-    for (uint32_t k = 0; k < tracer->solid_count; k++) {
-        int count = object_stretches(thread, tracer->solids[k], ray, true, stretches);
-        for (int i = 0; i < count; i++)
-            if (!stretches[i].interior->is_hollow)
-                cut(out, stretches[i].begin, stretches[i].end);
-    }
+    out->count = 1;
+    out->begin[0] = 0;
+    out->end[0] = ray->tmax;
+    if (tracer->solid_count == 0)
+        return;
+    OpenQuery query = {thread, ray, out};
+    for (uint32_t i = 0; i < tracer->unbounded_count; i++)
+        cut_object(&query, tracer->unbounded[i]);
+    Ray whole = *ray;
+    if (tracer->index)
+        box_index_any(tracer->index, &whole, cut_item, &query);
+    sort_parts(out);
 }
 
 /* --- media ------------------------------------------------------------------------------------ */
@@ -118,10 +160,12 @@ Rgb media_shadow(TraceThread *thread, const Ray *ray, bool is_to_light)
     const Tracer *tracer = thread->tracer;
     Rgb light = RGB_WHITE;
     OpenParts open;
+    open.count = -1; /* not looked for yet */
     Stretch stretches[STRETCHES_MAX];
-    find_open(thread, ray, &open);
     for (uint32_t k = 0; k < tracer->media_count && !rgb_is_black(light); k++) {
         int count = object_stretches(thread, tracer->media[k], ray, is_to_light, stretches);
+        if (count > 0 && open.count < 0)
+            find_open(thread, ray, &open);
         for (int i = 0; i < count; i++) {
             const Stretch *s = &stretches[i];
             MediaHere here;

@@ -24,6 +24,7 @@ typedef struct TracedObject {
     bool is_hidden[RAY_KIND_COUNT];
     bool is_closed; /* made of closed solids: normals tell entering from leaving */
     bool may_transmit; /* some surface of it lets light through */
+    bool keeps_air_out; /* not hollow, shadow rays may be inside of it, and there is air to keep out */
 } TracedObject;
 
 /* Objects grouped for bundles of shadow rays. */
@@ -43,9 +44,7 @@ struct Tracer {
     uint32_t clear_count;
     uint32_t *media; /* solids with media in them that are seen, ascending */
     uint32_t media_count;
-    uint32_t *solids; /* that are not hollow and that shadow rays may be inside of, ascending; none
-                         where there is nothing they would keep out */
-    uint32_t solid_count;
+    uint32_t solid_count; /* objects that keep air out */
     BundleIndex *bundles;
     ViewIndex *camera_view;  /* NULL: none */
     ViewIndex **light_views; /* per light; NULL: none */

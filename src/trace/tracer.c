@@ -140,8 +140,9 @@ static void describe_object(Tracer *tracer, uint32_t i)
         tracer->clear[tracer->clear_count++] = i;
     if (has_media)
         tracer->media[tracer->media_count++] = i;
-    if (!sum.is_hollow && plan_has_air(tracer->plan) && may_hold_shadow_ray(tracer, i))
-        tracer->solids[tracer->solid_count++] = i;
+    out->keeps_air_out =
+        !sum.is_hollow && plan_has_air(tracer->plan) && may_hold_shadow_ray(tracer, i);
+    tracer->solid_count += out->keeps_air_out;
 }
 
 /* Rays to this light all end in one point. */
@@ -236,11 +237,10 @@ Status tracer_new(const Scene *scene, const Plan *plan, int threads, Diag *diag,
     tracer->clear = mem_array((size_t)scene->object_count + 1, sizeof *tracer->clear);
     tracer->light_views = mem_array((size_t)scene->light_count + 1, sizeof *tracer->light_views);
     tracer->media = mem_array((size_t)scene->object_count + 1, sizeof *tracer->media);
-    tracer->solids = mem_array((size_t)scene->object_count + 1, sizeof *tracer->solids);
     tracer->light_interiors =
         mem_array((size_t)scene->light_count + 1, sizeof *tracer->light_interiors);
-    if (!tracer->objects || !tracer->clear || !tracer->media || !tracer->solids ||
-        !tracer->light_views || !tracer->light_interiors) {
+    if (!tracer->objects || !tracer->clear || !tracer->media || !tracer->light_views ||
+        !tracer->light_interiors) {
         tracer_free(tracer);
         return diag_no_memory(diag, "the tracer");
     }
@@ -279,7 +279,6 @@ void tracer_free(Tracer *tracer)
     mem_free(tracer->unbounded);
     mem_free(tracer->clear);
     mem_free(tracer->media);
-    mem_free(tracer->solids);
     mem_free(tracer->objects);
     mem_free(tracer);
 }
