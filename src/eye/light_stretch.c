@@ -7,7 +7,7 @@
 static bool is_in_cone(const Light *light, V3 p)
 {
     V3 from = v3_sub(p, light->location);
-    return v3_dot(from, light->direction) > cos(light->falloff) * v3_len(from);
+    return v3_dot(from, light->direction) > light->cos_falloff * v3_len(from);
 }
 
 static bool is_in_beam(const Light *light, V3 p)
@@ -45,7 +45,7 @@ static int light_crossings(const Light *light, const Ray *ray, double t[3])
     double od = v3_dot(from, ray->d), oo = v3_len2(from);
     int count;
     if (light->kind == LIGHT_SPOT) {
-        double c2 = cos(light->falloff) * cos(light->falloff);
+        double c2 = light->cos_falloff * light->cos_falloff;
         count = solve(step * step - c2, along * step - c2 * od, along * along - c2 * oo, t);
     } else {
         double r2 = light->falloff * light->falloff;

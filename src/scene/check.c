@@ -238,8 +238,12 @@ Status scene_check(Scene *scene, Diag *diag)
     set_object_flags(scene);
 
     bool is_good = check_camera(scene, diag);
-    for (int i = 0; i < scene->light_count; i++)
-        is_good &= check_light(&scene->lights[i], diag);
+    for (int i = 0; i < scene->light_count; i++) {
+        Light *l = &scene->lights[i];
+        l->cos_radius = cos(l->radius);
+        l->cos_falloff = cos(l->falloff);
+        is_good &= check_light(l, diag);
+    }
     check_content(scene, diag);
     check_media(scene, diag);
     if (is_good)

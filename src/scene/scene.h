@@ -73,6 +73,7 @@ typedef struct Light {
     V3 direction;                  /* unit, location to point_at */
     Rgb color;
     double radius, falloff, tightness; /* spot: radians; cylinder: scene units */
+    double cos_radius, cos_falloff;    /* of a spot: set by scene_check */
     double fade_distance, fade_power;  /* 0: no fading */
     AreaLight area;
     Tri photon_reflection, photon_refraction;

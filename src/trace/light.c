@@ -21,7 +21,7 @@ static double spot_factor(const Light *light, V3 to_light)
     double cosine = -v3_dot(to_light, light->direction);
     if (!(cosine > 0))
         return 0;
-    double inner = cos(light->radius), outer = cos(light->falloff);
+    double inner = light->cos_radius, outer = light->cos_falloff;
     if (cosine >= inner)
         return power_or_one(cosine, light->tightness);
     if (!(cosine > outer))

@@ -21,6 +21,14 @@ static Light light_towards(LightKind kind, V3 point_at)
     return light;
 }
 
+static void set_cone(Light *light, double radius, double falloff)
+{
+    light->radius = radius;
+    light->falloff = falloff;
+    light->cos_radius = cos(radius);
+    light->cos_falloff = cos(falloff);
+}
+
 static double radiance_at(const Light *light, V3 p)
 {
     LightSample sample = light_at(light, light->location, p);
@@ -37,12 +45,10 @@ static void test_spotlight(void **state)
 {
     (void)state;
     Light light = light_towards(LIGHT_SPOT, v3(0, 0, 0));
-    light.radius = 20 * DEG;
-    light.falloff = 40 * DEG;
+    set_cone(&light, 20 * DEG, 40 * DEG);
     check_row(&light, (const double[]){0.41769, 0.77693, 0.89442, 0.95782, 0.99504, 0.99504,
                                        0.71728, 0.04402});
-    light.radius = 10 * DEG;
-    light.falloff = 45 * DEG;
+    set_cone(&light, 10 * DEG, 45 * DEG);
     light.tightness = 7;
     check_row(&light, (const double[]){0.14900, 0.37414, 0.68547, 0.92857, 0.96228, 0.70568,
                                        0.27820, 0.03607});
@@ -53,7 +59,7 @@ static void test_spotlight_without_soft_edge(void **state)
 {
     (void)state;
     Light light = light_towards(LIGHT_SPOT, v3(1, 0, 0));
-    light.radius = light.falloff = 45 * DEG;
+    set_cone(&light, 45 * DEG, 45 * DEG);
     assert_true(light_shape_factor(&light, light.location, v3(5.9, 0, 0)) == 1);
     assert_true(light_shape_factor(&light, light.location, v3(6.1, 0, 0)) == 0);
 }
@@ -122,7 +128,7 @@ static void test_point_on_the_light(void **state)
 {
     (void)state;
     Light light = light_towards(LIGHT_SPOT, v3(0, 0, 0));
-    light.radius = light.falloff = 1;
+    set_cone(&light, 1, 1);
     LightSample sample = light_at(&light, light.location, light.location);
     assert_true(sample.distance == 0 && rgb_is_finite(sample.color) &&
                 v3_is_finite(sample.to_light));
