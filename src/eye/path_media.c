@@ -41,30 +41,6 @@ static Rgb shown(const Medium *medium, V3 p)
     return rgb_scale(rgb_mul(medium_density(medium, p), medium->scattering), (float)scale);
 }
 
-/* Draw one of the media at p by how much it shows of `light`; *weight is that over the chance. */
-static const Medium *choose_shown(const MediaHere *here, V3 p, Rgb light, Rng *rng, Rgb *weight)
-{
-    double all = 0, chance = 0;
-    for (int l = 0; l < here->list_count; l++)
-        for (int i = 0; i < here->lists[l].count; i++)
-            all += (double)rgb_sum(rgb_mul(shown(here->lists[l].media[i], p), light));
-    double rest = rng_double(rng) * all;
-    const Medium *chosen = NULL;
-    for (int l = 0; l < here->list_count && rest >= 0; l++)
-        for (int i = 0; i < here->lists[l].count && rest >= 0; i++) {
-            const Medium *medium = here->lists[l].media[i];
-            double own = (double)rgb_sum(rgb_mul(shown(medium, p), light));
-            if (!(own > 0))
-                continue;
-            chosen = medium;
-            chance = own / all;
-            rest -= own;
-        }
-    if (chosen)
-        *weight = rgb_scale(shown(chosen, p), (float)(1 / chance));
-    return chosen;
-}
-
 /* How much of light that comes evenly the media along a profile show. */
 static Rgb all_shown(const MediaProfile *profile)
 {
@@ -100,7 +76,7 @@ static bool show(EyeThread *eye, Path *path, const MediaHere *here, const MediaP
     const Medium *medium = NULL;
     if (media_place(profile, rng_double(&eye->rng), &t, &weight)) {
         path_weigh(path, weight);
-        medium = choose_shown(here, ray_at(&path->ray, t), path->weight, &eye->rng, &kept);
+        medium = media_choose(here, ray_at(&path->ray, t), path->weight, shown, &eye->rng, &kept);
     }
     if (!medium) { /* nothing scatters there after all */
         path_weigh(path, RGB_BLACK);
@@ -143,7 +119,8 @@ static bool collide(EyeThread *eye, Path *path, const MediaHere *here, const Med
     }
     V3 p = ray_at(&path->ray, t);
     V3 looked_at = here->is_homogeneous ? p : ray_at(&path->ray, cell->at);
-    const Medium *medium = media_choose(here, looked_at, path->weight, &eye->rng, &kept);
+    const Medium *medium =
+        media_choose(here, looked_at, path->weight, medium_kept, &eye->rng, &kept);
     path_weigh(path, rgb_mul(kept, interiors_fade(&path->inside, t)));
     if (!medium)
         return true;

@@ -123,7 +123,6 @@ static LightBooks **books_of(PhotonBooks *books, MapKind kind)
                                 : &books->volume;
 }
 
-/* Add up the books of two kinds of photons in one map. */
 /* The balance of all photons of two books. */
 static void join_balance(LightBooks *to, const LightBooks *from)
 {
@@ -136,10 +135,10 @@ static void join_balance(LightBooks *to, const LightBooks *from)
         rgb_hypot(rgb_scale(to->balance_error, 1 - part), rgb_scale(from->balance_error, part));
 }
 
-static void join_books(LightBooks *to, const LightBooks *from)
+/* What is counted by photon. */
+static void join_counts(LightBooks *to, const LightBooks *from)
 {
     join_balance(to, from);
-    to->power += from->power;
     to->budget += from->budget;
     to->emitted += from->emitted;
     to->stored_paths += from->stored_paths;
@@ -147,6 +146,13 @@ static void join_books(LightBooks *to, const LightBooks *from)
     to->escaped += from->escaped;
     to->cut += from->cut;
     to->stored += from->stored;
+}
+
+/* Add up the books of two kinds of photons in one map. */
+static void join_books(LightBooks *to, const LightBooks *from)
+{
+    join_counts(to, from);
+    to->power += from->power;
     to->flux_emitted = rgb_add(to->flux_emitted, from->flux_emitted);
     to->flux_stored = rgb_add(to->flux_stored, from->flux_stored);
     to->flux_absorbed = rgb_add(to->flux_absorbed, from->flux_absorbed);
@@ -349,16 +355,9 @@ static Rgb mean_flux(Rgb mean, Rgb value, uint64_t before)
 
 static void add_book(LightBooks *to, const LightBooks *from, uint64_t before)
 {
-    join_balance(to, from);
+    join_counts(to, from);
     to->power = mean_of(to->power, from->power, before);
     to->share = mean_of(to->share, from->share, before);
-    to->budget += from->budget;
-    to->emitted += from->emitted;
-    to->stored_paths += from->stored_paths;
-    to->absorbed += from->absorbed;
-    to->escaped += from->escaped;
-    to->cut += from->cut;
-    to->stored += from->stored;
     to->flux_emitted = mean_flux(to->flux_emitted, from->flux_emitted, before);
     to->flux_stored = mean_flux(to->flux_stored, from->flux_stored, before);
     to->flux_absorbed = mean_flux(to->flux_absorbed, from->flux_absorbed, before);

@@ -45,7 +45,7 @@ static void scatter(const MediaHere *here, const MediaProfile *profile, const Ra
     out->is_scattered = true;
     out->weight = RGB_BLACK;
     V3 p = ray_at(ray, here->is_homogeneous ? out->t : cell->at);
-    const Medium *medium = media_choose(here, p, rgb_mul(weight, clear), rng, &kept);
+    const Medium *medium = media_choose(here, p, rgb_mul(weight, clear), medium_kept, rng, &kept);
     if (!medium)
         return;
     Rgb share = rgb_mul(clear, kept);

@@ -122,9 +122,13 @@ bool media_place(const MediaProfile *profile, double u, double *t, Rgb *weight);
 bool media_collide(const MediaProfile *profile, Rgb light, Rng *rng, double *t, Rgb *weight,
                    const MediaCell **cell);
 
-/* Draw one of the media at p by what it scatters of `light` after a collision; *weight is what it
- * keeps of it over the chance.  NULL: none scatters. */
-const Medium *media_choose(const MediaHere *here, V3 p, Rgb light, Rng *rng, Rgb *weight);
+/* Return what a medium scatters at p of light that collides, per scene unit. */
+Rgb medium_kept(const Medium *medium, V3 p);
+
+/* Draw one of the media at p by how much it has, as `share` says, of `light`; *weight is its share over
+ * the chance.  NULL: none has any. */
+const Medium *media_choose(const MediaHere *here, V3 p, Rgb light,
+                           Rgb (*share)(const Medium *medium, V3 p), Rng *rng, Rgb *weight);
 
 /* Return what passes the media of objects on a shadow ray.
  *

@@ -120,26 +120,25 @@ bool media_collide(const MediaProfile *profile, Rgb light, Rng *rng, double *t, 
     return false;
 }
 
-/* What a medium scatters of light that collides, per scene unit. */
-static Rgb kept(const Medium *medium, V3 p, Rgb light)
+Rgb medium_kept(const Medium *medium, V3 p)
 {
-    Rgb scattered = rgb_scale(medium->scattering, medium->extinction);
-    return rgb_mul(rgb_mul(medium_density(medium, p), scattered), light);
+    return rgb_mul(medium_density(medium, p), rgb_scale(medium->scattering, medium->extinction));
 }
 
-const Medium *media_choose(const MediaHere *here, V3 p, Rgb light, Rng *rng, Rgb *weight)
+const Medium *media_choose(const MediaHere *here, V3 p, Rgb light,
+                           Rgb (*share)(const Medium *medium, V3 p), Rng *rng, Rgb *weight)
 {
     double all = 0;
     for (int l = 0; l < here->list_count; l++)
         for (int i = 0; i < here->lists[l].count; i++)
-            all += (double)rgb_sum(kept(here->lists[l].media[i], p, light));
+            all += (double)rgb_sum(rgb_mul(share(here->lists[l].media[i], p), light));
     double rest = rng_double(rng) * all;
     const Medium *chosen = NULL;
     double chance = 0;
     for (int l = 0; l < here->list_count && rest >= 0; l++)
         for (int i = 0; i < here->lists[l].count && rest >= 0; i++) {
             const Medium *medium = here->lists[l].media[i];
-            double own = (double)rgb_sum(kept(medium, p, light));
+            double own = (double)rgb_sum(rgb_mul(share(medium, p), light));
             if (!(own > 0))
                 continue;
             chosen = medium;
@@ -147,6 +146,6 @@ const Medium *media_choose(const MediaHere *here, V3 p, Rgb light, Rng *rng, Rgb
             rest -= own;
         }
     if (chosen)
-        *weight = rgb_scale(kept(chosen, p, RGB_WHITE), (float)(1 / chance));
+        *weight = rgb_scale(share(chosen, p), (float)(1 / chance));
     return chosen;
 }

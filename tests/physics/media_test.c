@@ -162,7 +162,7 @@ static void single_scattering_slab(void **state)
         double x = scattering + absorption, way = 1 + 1 / mu;
         double phase = phase_value((PhaseKind)type, 0.6, -mu);
         double expected = scattering * phase * (1 - exp(-x * d * way)) / (x * way);
-        char what[32];
+        char what[64];
         snprintf(what, sizeof what, "single-scattering slab, type %d", type);
         check(what, look(text, 4000), expected, 0.003);
     }
