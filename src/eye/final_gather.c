@@ -7,7 +7,9 @@
  * cells moves by the step over the distance of the nearer.
  *
  * A ray that ends where the irradiance was estimated over a disk as large as the ray is long would
- * show that disk's blur: there the light is found anew, by shadow rays and a small gathering.
+ * show that disk's blur: there the light is found anew, by shadow rays and a small gathering, once
+ * a ray at most: where a disk is larger than the object, every hit is near.  A ray that goes on and
+ * on, as by total reflection, is ended by dice that make up for it.
  *
  * Media dim a ray and send it what they give off, what they scatter of a lamp from a place drawn at
  * random, and the photons in them.
@@ -27,6 +29,7 @@ enum {
     GUIDE_PHOTONS = 64, /* looked at for that */
     NEAR_RAYS = 24,     /* of the small gathering */
     CHAIN_MAX = 64,     /* mirrors and panes a ray may pass */
+    CHAIN_SURE = 4,     /* and those before the dice are thrown for going on at all */
     FEW_RAYS = 4
 };
 
@@ -51,7 +54,9 @@ typedef struct GatherRay {
     Ray ray;
     Interiors inside;
     Rgb weight;
-    int depth; /* of the gathering it belongs to */
+    int depth;         /* of the gathering it belongs to */
+    int passed;        /* mirrors and panes */
+    bool has_gathered; /* light anew, on the way */
 } GatherRay;
 
 static void gather_at(EyeThread *eye, const ShapePoint *at, V3 n, const Interiors *inside, int rays,
@@ -59,9 +64,9 @@ static void gather_at(EyeThread *eye, const ShapePoint *at, V3 n, const Interior
 
 /* --- what a ray brings --------------------------------------------------------------------- */
 
-/* The light of one side of a surface, found anew instead of looked up. */
+/* What a surface sends on of the light that comes to it, found anew instead of looked up. */
 static Rgb light_nearby(EyeThread *eye, const SurfaceSample *s, const Interiors *inside,
-                        Rgb diffuse, int depth)
+                        Rgb diffuse, Rgb back, int depth)
 {
     GatheredLight gathered;
     Rgb light = RGB_BLACK;
@@ -70,7 +75,11 @@ static Rgb light_nearby(EyeThread *eye, const SurfaceSample *s, const Interiors 
     if (eye->options.caustic)
         light = rgb_add(light, caustic_light(eye, s));
     gather_at(eye, &s->at, s->ng, inside, NEAR_RAYS, depth + 1, &gathered);
-    return rgb_add(light, rgb_mul(diffuse, gathered.irradiance));
+    light = rgb_add(light, rgb_mul(diffuse, gathered.irradiance));
+    if (rgb_is_black(back))
+        return light;
+    gather_at(eye, &s->at, v3_neg(s->ng), inside, NEAR_RAYS, depth + 1, &gathered);
+    return rgb_add(light, rgb_mul(back, gathered.irradiance));
 }
 
 /* The light that arrives at a side of a surface: looked up, or in one of many passes from the
@@ -89,14 +98,16 @@ static Rgb irradiance_there(EyeThread *eye, const SurfaceSample *s, V3 n, double
 }
 
 /* What a surface met after t sends on of the light that comes to it. */
-static Rgb reflected_light(EyeThread *eye, const GatherRay *way, const SurfaceSample *s, double t)
+static Rgb reflected_light(EyeThread *eye, GatherRay *way, const SurfaceSample *s, double t)
 {
     Rgb diffuse = surface_diffuse_even(s), back = surface_diffuse_back(s), light = RGB_BLACK;
     double radius;
     if (!rgb_is_black(diffuse)) {
         Rgb e = irradiance_there(eye, s, s->ng, &radius);
-        if (t < NEAR_RADII * radius && way->depth == 0)
-            return light_nearby(eye, s, &way->inside, diffuse, way->depth);
+        if (t < NEAR_RADII * radius && way->depth == 0 && !way->has_gathered) {
+            way->has_gathered = true;
+            return light_nearby(eye, s, &way->inside, diffuse, back, way->depth);
+        }
         light = rgb_mul(diffuse, e);
     }
     if (!rgb_is_black(back)) {
@@ -133,6 +144,13 @@ static bool disperse(EyeThread *eye, GatherRay *way, const Hit *hit)
     return true;
 }
 
+/* The most the chance of going on may be.  A ray that loses nothing on its way passes n surfaces
+ * with the chance CHAIN_SURE / n, so that its weight grows no faster than their number. */
+static float chance_most(const GatherRay *way)
+{
+    return way->passed < CHAIN_SURE ? 1 : (float)way->passed / (float)(way->passed + 1);
+}
+
 /* Turn the ray into one of those that go on through the surface or off it, with the chance of how
  * much they bring; returns false if it ends there. */
 static bool go_on(EyeThread *eye, GatherRay *way, const Hit *hit, const SurfaceSample *s)
@@ -141,9 +159,10 @@ static bool go_on(EyeThread *eye, GatherRay *way, const Hit *hit, const SurfaceS
     float transmit = s->has_transmission ? part_of(through) : 0, total = transmit;
     for (int i = 0; i < s->layer_count; i++)
         total += part_of(s->layers[i].reflect);
-    float most = fminf(1, total), x = rng_float(&eye->rng);
+    float most = fminf(chance_most(way), total), x = rng_float(&eye->rng);
     if (!(x < most))
         return false;
+    way->passed++;
     float scale = total / most; /* a share of part p is taken with the chance p / scale */
     x *= scale;
     if (x < transmit) {

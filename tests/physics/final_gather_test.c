@@ -311,6 +311,31 @@ static void few_photons(void **state)
     picture_done(&picture);
 }
 
+/* Glass that scatters a little, and so few photons that every estimate reaches around it: all that
+ * gather rays meet is near, and inside they are reflected totally, on and on.  The dice leave a ray
+ * 5 + 4 (1/5 + 1/6 + ... + 1/63) < 16 lookups in the mean, and once at most it gathers anew, by
+ * 24 others: that is another point, so there are less than 16 (24 + 1) lookups a point. */
+static void glass_in_few_photons(void **state)
+{
+    (void)state;
+    const char *text =
+        "#version 3.7;\n"
+        "global_settings { assumed_gamma 1 pms { global_photons 3000 } }\n"
+        "camera { location <0,0,-3> look_at 0 }\n"
+        "light_source { <2,4,-4>, 1 }\n"
+        "sphere { 0, 1 pigment { rgbt <1,1,1,0.9> } finish { ambient 0 diffuse 0.3 }\n"
+        "  interior { ior 1.5 } }\n"
+        "plane { y, -1 pigment { rgb 1 } finish { ambient 0 diffuse 0.5 } }\n";
+    Picture picture;
+    make_picture(&picture, text, by_cache, 2, 1, 1);
+    const uint64_t *count = picture.result.stats.count;
+    print_message("# %llu lookups at %llu points\n", (unsigned long long)count[STAT_LOOKUPS],
+                  (unsigned long long)count[STAT_FINAL_GATHERS]);
+    assert_true(count[STAT_FINAL_GATHERS] > 100);
+    assert_true(count[STAT_LOOKUPS] < 16 * (24 + 1) * count[STAT_FINAL_GATHERS]);
+    picture_done(&picture);
+}
+
 /* The books of what glows balance too. */
 static void books_of_glow_balance(void **state)
 {
@@ -367,6 +392,7 @@ int main(void)
         cmocka_unit_test(rooms_agree_with_paths),
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(few_photons),
+        cmocka_unit_test(glass_in_few_photons),
         cmocka_unit_test(books_of_glow_balance),
     };
     return cmocka_run_group_tests_name("final_gather", tests, NULL, NULL);
