@@ -66,8 +66,6 @@ printf '  %-22s %5s %8s %8s %7s %8s %8s\n' scene AA "pms cpu" "povray" times "pm
 for scene in scenes/*.pms; do
     # pms { gi } is work povray does not do
     grep -q 'pms *{' "$scene" && continue
-    # photons in media take povray many minutes
-    grep -q 'photons *{.*media *[1-9]' "$scene" && continue
     for switch in -A +A0.3; do
         "$PMS" validate "$scene" $size $switch -J --json >"$T/json" 2>/dev/null || continue
         number() { sed -n "s/.*\"$1\": \([^,}]*\).*/\1/p" "$T/json"; }
