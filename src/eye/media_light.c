@@ -124,11 +124,6 @@ static void add_piece(Scatter *s, const Warp *warp, double low, double high, dou
         (Piece){.warp = *warp, .low = low, .high = high, .skew = skew, .sum = run->whole};
 }
 
-static float sum_abs(Rgb c)
-{
-    return fabsf(c.r) + fabsf(c.g) + fabsf(c.b);
-}
-
 /* Sum up the light between two values of v by Simpson's rule, halving where that differs from the
  * rule of trapezes. */
 static void sum_light(Scatter *s, const Warp *warp, double low, Rgb first, double high, Rgb last,
@@ -139,8 +134,8 @@ static void sum_light(Scatter *s, const Warp *warp, double low, Rgb first, doubl
     float width = (float)(high - low);
     Rgb simpson = rgb_scale(rgb_mad(ends, 4, between), width / 6);
     Rgb trapeze = rgb_scale(rgb_mad(ends, 2, between), width / 4);
-    float error = sum_abs(rgb_sub(simpson, trapeze));
-    float limit = fmaxf(s->enough, PIECE_ERROR * sum_abs(s->run.whole));
+    float error = rgb_sum_abs(rgb_sub(simpson, trapeze));
+    float limit = fmaxf(s->enough, PIECE_ERROR * rgb_sum_abs(s->run.whole));
     if (error <= limit || halvings == 0 || s->run.count > PIECES_MAX / 2) {
         float all = rgb_sum(ends);
         add_piece(s, warp, low, high, all > 0 ? (double)(rgb_sum(first) / all) : 0.5, simpson);
@@ -290,7 +285,7 @@ static LightPlace make_place(const Scatter *s, double begin, double end, double 
 static float whole_difference(const Scatter *s, const LightPlace *a, const LightPlace *b)
 {
     Rgb d = rgb_mul(rgb_sub(a->arrived, b->arrived), s->run.whole);
-    return sum_abs(d);
+    return rgb_sum_abs(d);
 }
 
 /* Halve the stretches beside a visible step; returns whether there were any. */
@@ -350,7 +345,7 @@ static float unit(float x)
 static Rgb arrived_at_end(const LightPlace *place, const LightPlace *next, double end)
 {
     Rgb step = rgb_sub(place->arrived, next->arrived);
-    if (sum_abs(step) > END_STEP || place->at == next->at)
+    if (rgb_sum_abs(step) > END_STEP || place->at == next->at)
         return place->arrived;
     float way = (float)((end - place->at) / (place->at - next->at));
     Rgb there = rgb_mad(place->arrived, way, step);

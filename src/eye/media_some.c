@@ -71,7 +71,7 @@ Rgb media_scatter_some(EyeThread *eye, const EyeLight *light, const MediaLobes *
     double t, u = rng_double(&eye->rng);
     Rgb weight;
     if (is_fading(light->light) ? !place_by_angle(profile, ray, point, u, &t, &weight)
-                                : !media_place(profile, u, &t, &weight))
+                                : !media_place(profile, RGB_WHITE, u, &t, &weight))
         return RGB_BLACK;
     V3 p = ray_at(ray, t);
     V3 looked_at = lobes->here->is_homogeneous ? p : ray_at(ray, air_cell_at(profile, t)->at);

@@ -73,24 +73,19 @@ typedef struct Odds {
     float transmit, diffuse, reflect[SURFACE_LAYERS_MAX], sum;
 } Odds;
 
-static float amount(Rgb c)
-{
-    return fabsf(c.r) + fabsf(c.g) + fabsf(c.b);
-}
-
 static void set_odds(const EyeThread *eye, const SurfaceSample *s, Odds *out)
 {
     bool is_reflecting = plan_has(eye->plan, FEATURE_REFLECTION);
     *out = (Odds){.transmit = 0};
     if (s->has_transmission && plan_has(eye->plan, FEATURE_REFRACTION))
-        out->transmit = s->is_total_reflection ? 3 : amount(s->filter);
+        out->transmit = s->is_total_reflection ? 3 : rgb_sum_abs(s->filter);
     out->sum = out->transmit;
     for (int i = 0; i < s->layer_count; i++) {
         const SurfaceLayer *layer = &s->layers[i];
         const Finish *finish = layer->finish;
-        out->reflect[i] = is_reflecting ? amount(layer->reflect) : 0;
+        out->reflect[i] = is_reflecting ? rgb_sum_abs(layer->reflect) : 0;
         float matt = layer->opacity * (fabsf(finish->diffuse) + fabsf(finish->diffuse_back));
-        out->diffuse += amount(rgb_scale(rgb_mul(layer->above, layer->color), matt));
+        out->diffuse += rgb_sum_abs(rgb_scale(rgb_mul(layer->above, layer->color), matt));
         out->sum += out->reflect[i];
     }
     out->sum += out->diffuse;

@@ -54,17 +54,12 @@ static Rgb all_shown(const MediaProfile *profile)
     return rgb_scale(sum, SCATTERING_UNIT);
 }
 
-static float amount(Rgb c)
-{
-    return fabsf(c.r) + fabsf(c.g) + fabsf(c.b);
-}
-
 /* Turn a path from the eye off in media, or let it pass. */
 static bool show(EyeThread *eye, Path *path, const MediaHere *here, const MediaProfile *profile,
                  const Veil *veil)
 {
-    float own = amount(rgb_mul(path->weight, rgb_mul(veil->front, all_shown(profile))));
-    float rest = amount(rgb_mul(path->weight, veil->through)), chance = own / (own + rest);
+    float own = rgb_sum_abs(rgb_mul(path->weight, rgb_mul(veil->front, all_shown(profile))));
+    float rest = rgb_sum_abs(rgb_mul(path->weight, veil->through)), chance = own / (own + rest);
     double t;
     Rgb weight, kept;
     if (!(own > 0) || !(rng_float(&eye->rng) < chance)) {
@@ -74,7 +69,7 @@ static bool show(EyeThread *eye, Path *path, const MediaHere *here, const MediaP
     }
     path_weigh(path, rgb_scale(veil->front, 1 / chance));
     const Medium *medium = NULL;
-    if (media_place(profile, rng_double(&eye->rng), &t, &weight)) {
+    if (media_place(profile, rgb_abs(path->weight), rng_double(&eye->rng), &t, &weight)) {
         path_weigh(path, weight);
         medium = media_choose(here, ray_at(&path->ray, t), path->weight, shown, &eye->rng, &kept);
     }
@@ -107,11 +102,10 @@ static bool collide(EyeThread *eye, Path *path, const MediaHere *here, const Med
 {
     const MediaCell *cell;
     double t;
-    Rgb clear, kept = RGB_BLACK, w = path->weight;
+    Rgb clear, kept = RGB_BLACK;
     if (plan_has(eye->plan, FEATURE_LIGHTS))
         add_lamps(eye, path, here, profile, veil, out);
-    bool is_met = media_collide(profile, rgb(fabsf(w.r), fabsf(w.g), fabsf(w.b)), &eye->rng, &t,
-                                &clear, &cell);
+    bool is_met = media_collide(profile, rgb_abs(path->weight), &eye->rng, &t, &clear, &cell);
     path_weigh(path, rgb_mul(veil->front, clear));
     if (!is_met) {
         path_weigh(path, veil->back);

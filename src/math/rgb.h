@@ -43,6 +43,9 @@ static inline float rgb_sum(Rgb a) { return a.r + a.g + a.b; }
 /* Return the largest magnitude of the channels. */
 static inline float rgb_max_abs(Rgb a) { return fmaxf(fabsf(a.r), fmaxf(fabsf(a.g), fabsf(a.b))); }
 
+static inline Rgb rgb_abs(Rgb a) { return rgb(fabsf(a.r), fabsf(a.g), fabsf(a.b)); }
+static inline float rgb_sum_abs(Rgb a) { return fabsf(a.r) + fabsf(a.g) + fabsf(a.b); }
+
 /* Return the root of the sum of the squares, as standard errors add up. */
 static inline Rgb rgb_hypot(Rgb a, Rgb b)
 {

@@ -78,7 +78,7 @@ bool media_leg(TraceThread *thread, const WalkRules *rules, const Ray *ray, doub
     Rgb before = media_transmittance(&here, ray, 0, begin, 0, rng);
     media_profile(&here, ray, begin, end, end, rng, &profile);
     if (may_stop && is_stored_in(&here))
-        out->has_stop = media_place(&profile, rng_double(rng), &out->stop, &out->power);
+        out->has_stop = media_place(&profile, weight, rng_double(rng), &out->stop, &out->power);
     if (may_scatter)
         scatter(&here, &profile, ray, weight, rng, out);
     else

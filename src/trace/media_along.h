@@ -106,12 +106,13 @@ Rgb media_transmittance(const MediaHere *here, const Ray *ray, double begin, dou
 
 /* Draw a place along a profile, where it scatters, in proportion to the light that gets there.
  *
+ * light   the channels that count, as a photon or path has them.
  * u       in [0,1).
  * weight  what passes up to there, over the density of the places: its mean over many places is
  *         the integral of what passes, over all that scatters.
  *
  * Returns false when nothing scatters. */
-bool media_place(const MediaProfile *profile, double u, double *t, Rgb *weight);
+bool media_place(const MediaProfile *profile, Rgb light, double u, double *t, Rgb *weight);
 
 /* Draw where light collides with the media.
  *

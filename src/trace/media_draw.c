@@ -26,53 +26,6 @@ static double densest(const MediaProfile *profile)
     return most;
 }
 
-/* The weight of a cell: how much light gets to its places, in the mean of the channels.  That the
- * density does not count keeps places as dense as light is: where they thinned out at a step of the
- * density, estimates from them would be wrong there. */
-static double cell_weight(const MediaCell *cell, double most)
-{
-    double scattering = mean(cell->point.scattering);
-    if (!(scattering > CLEAR_PART * most))
-        return 0;
-    double x = mean(cell->point.extinction), length = cell->end - cell->begin;
-    double within = x * length > 1e-4 ? -expm1(-x * length) / x : length;
-    return exp(-mean(cell->depth)) * within;
-}
-
-/* The place in a cell before which the part u of what it lets through is lost. */
-static double place_in_cell(const MediaCell *cell, double u)
-{
-    double x = mean(cell->point.extinction), length = cell->end - cell->begin;
-    double way = x * length > 1e-4 ? -log1p(u * expm1(-x * length)) / x : u * length;
-    return cell->begin + fmin(way, length);
-}
-
-bool media_place(const MediaProfile *profile, double u, double *t, Rgb *weight)
-{
-    double all = 0, most = densest(profile);
-    for (int i = 0; i < profile->count; i++)
-        all += cell_weight(&profile->cells[i], most);
-    if (!(all > 0))
-        return false;
-    double rest = u * all, own = 0;
-    const MediaCell *cell = NULL;
-    for (int i = 0; i < profile->count; i++) {
-        double here = cell_weight(&profile->cells[i], most);
-        if (!(here > 0))
-            continue;
-        rest -= own;
-        cell = &profile->cells[i];
-        own = here;
-        if (rest < here)
-            break;
-    }
-    *t = place_in_cell(cell, fmin(1, rest / own));
-    double way = *t - cell->begin;
-    double density = exp(-mean(cell->depth) - mean(cell->point.extinction) * way) / all;
-    *weight = rgb_scale(clear_at(cell, *t), (float)(1 / density));
-    return true;
-}
-
 /* One channel's share of the light. */
 static void shares(Rgb light, double out[3])
 {
@@ -90,6 +43,79 @@ static double channel(Rgb c, int i)
 static double weighted(Rgb c, const double share[3])
 {
     return (double)c.r * share[0] + (double)c.g * share[1] + (double)c.b * share[2];
+}
+
+/* How much light of a channel gets to the places of a cell, times its length.  That the density
+ * does not count keeps places as dense as light is: where they thinned out at a step of the
+ * density, estimates from them would be wrong there. */
+static double cell_weight(const MediaCell *cell, int c, double most)
+{
+    if (!(mean(cell->point.scattering) > CLEAR_PART * most))
+        return 0;
+    double x = channel(cell->point.extinction, c), length = cell->end - cell->begin;
+    double within = x * length > 1e-4 ? -expm1(-x * length) / x : length;
+    return exp(-channel(cell->depth, c)) * within;
+}
+
+static double channel_weight(const MediaProfile *profile, int c, double most)
+{
+    double sum = 0;
+    for (int i = 0; i < profile->count; i++)
+        sum += cell_weight(&profile->cells[i], c, most);
+    return sum;
+}
+
+/* The place before which the part u of what a channel's light does in a cell is done. */
+static double place_in_cell(const MediaCell *cell, int c, double u)
+{
+    double x = channel(cell->point.extinction, c), length = cell->end - cell->begin;
+    double way = x * length > 1e-4 ? -log1p(u * expm1(-x * length)) / x : u * length;
+    return cell->begin + fmin(way, length);
+}
+
+/* Draw by the light of one channel; `all` is its weight, above 0. */
+static const MediaCell *draw_place(const MediaProfile *profile, int c, double most, double all,
+                                   double u, double *t)
+{
+    double rest = u * all, own = 0;
+    const MediaCell *cell = NULL;
+    for (int i = 0; i < profile->count; i++) {
+        double here = cell_weight(&profile->cells[i], c, most);
+        if (!(here > 0))
+            continue;
+        rest -= own;
+        cell = &profile->cells[i];
+        own = here;
+        if (rest < here)
+            break;
+    }
+    *t = place_in_cell(cell, c, fmin(1, rest / own));
+    return cell;
+}
+
+bool media_place(const MediaProfile *profile, Rgb light, double u, double *t, Rgb *weight)
+{
+    double share[3], part[3], all = 0, most = densest(profile);
+    shares(light, share);
+    for (int c = 0; c < 3; c++) {
+        part[c] = share[c] > 0 ? share[c] * channel_weight(profile, c, most) : 0;
+        all += part[c];
+    }
+    if (!(all > 0))
+        return false;
+    /* The channel is drawn by what it has; the chance counts for all that could have been. */
+    int own = 0;
+    double rest = u * all;
+    while (own < 2 && !(rest < part[own]))
+        rest -= part[own++];
+    while (!(part[own] > 0)) /* by rounding */
+        own--;
+    const MediaCell *cell =
+        draw_place(profile, own, most, part[own] / share[own], fmin(1, rest / part[own]), t);
+    Rgb clear = clear_at(cell, *t);
+    double density = weighted(clear, share) / all;
+    *weight = density > 0 ? rgb_scale(clear, (float)(1 / density)) : RGB_BLACK;
+    return true;
 }
 
 bool media_collide(const MediaProfile *profile, Rgb light, Rng *rng, double *t, Rgb *weight,
