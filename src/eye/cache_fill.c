@@ -101,7 +101,8 @@ Status irradiance_cache_fill(const Tracer *tracer, const EyeOptions *options,
     if (!plan_has(tracer_plan(tracer), FEATURE_IRRADIANCE_CACHE))
         return OK;
     double reach = tracer_scene(tracer)->settings.radiosity.error_bound * CACHE_ERROR_UNIT;
-    IrradianceCache *cache = irradiance_cache_new(bound_center(tracer_bound(tracer)), reach);
+    Bound bound = tracer_bound(tracer);
+    IrradianceCache *cache = irradiance_cache_new(bound_center(bound), bound_radius(bound), reach);
     EyeThread **eyes = mem_array((size_t)filling->threads, sizeof *eyes);
     Status status = cache && eyes ? OK : diag_no_memory(diag, "the irradiance cache");
     EyeOptions own = *options;

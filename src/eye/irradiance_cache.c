@@ -10,7 +10,7 @@
 
 enum { LEVELS = 64, BUCKETS_FIRST = 1024, NONE = -1 };
 
-/* Levels of grids around cells of 1 scene unit. */
+/* The level of the grid whose cells are one unit wide: as large as the scene. */
 enum { LEVEL_OF_1 = 40 };
 
 /* A record in front of the point by more than this part of the distance may see what the point
@@ -26,6 +26,7 @@ typedef struct Entry {
 
 struct IrradianceCache {
     V3 center;
+    double unit; /* scene units, a power of two */
     double reach;
     IrradianceRecord *records;
     size_t record_count, record_capacity;
@@ -40,7 +41,7 @@ struct IrradianceCache {
 
 static double vector_length(const float v[3])
 {
-    return sqrt((double)(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+    return v3_len(v3((double)v[0], (double)v[1], (double)v[2]));
 }
 
 void irradiance_record_init(IrradianceRecord *record, V3 p, V3 n, const GatheredLight *light,
@@ -116,12 +117,13 @@ static bool set_buckets(IrradianceCache *cache, size_t count)
     return true;
 }
 
-IrradianceCache *irradiance_cache_new(V3 center, double reach)
+IrradianceCache *irradiance_cache_new(V3 center, double radius, double reach)
 {
     IrradianceCache *cache = mem_alloc(sizeof *cache);
     if (!cache)
         return NULL;
     cache->center = center;
+    cache->unit = radius > 0 && isfinite(radius) ? ldexp(1, ilogb(radius)) : 1;
     cache->reach = reach;
     if (!set_buckets(cache, BUCKETS_FIRST)) {
         mem_free(cache);
@@ -146,22 +148,22 @@ size_t irradiance_cache_count(const IrradianceCache *cache)
 }
 
 /* The grid whose cells are just as wide as a record reaches to both sides, or wider. */
-static int level_of(double reach)
+static int level_of(const IrradianceCache *cache, double reach)
 {
     int exponent;
-    frexp(2 * reach, &exponent);
+    frexp(2 * reach / cache->unit, &exponent);
     int level = exponent + LEVEL_OF_1;
     return level < 0 ? 0 : level >= LEVELS ? LEVELS - 1 : level;
 }
 
-static double cells_per_unit(int level)
+static double cells_per_unit(const IrradianceCache *cache, int level)
 {
-    return ldexp(1, LEVEL_OF_1 - level);
+    return ldexp(1, LEVEL_OF_1 - level) / cache->unit;
 }
 
 static void cell_at(const IrradianceCache *cache, V3 p, int level, double aside, int64_t out[3])
 {
-    double scale = cells_per_unit(level);
+    double scale = cells_per_unit(cache, level);
     out[0] = (int64_t)floor((p.x - cache->center.x + aside) * scale);
     out[1] = (int64_t)floor((p.y - cache->center.y + aside) * scale);
     out[2] = (int64_t)floor((p.z - cache->center.z + aside) * scale);
@@ -203,7 +205,7 @@ static bool add_entry(IrradianceCache *cache, const Entry *entry)
 Status irradiance_cache_add(IrradianceCache *cache, const IrradianceRecord *record, Diag *diag)
 {
     double reach = record->radius * cache->reach;
-    int level = level_of(reach);
+    int level = level_of(cache, reach);
     int64_t low[3], high[3];
     void *records = cache->records;
     if (mem_grow(&records, cache->record_count, &cache->record_capacity, sizeof *record) != 0)

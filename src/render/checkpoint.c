@@ -16,7 +16,7 @@
 
 static const char MAGIC[8] = "PMSSTATE";
 
-enum { BYTE_ORDER_MARK = 0x01020304, FORMAT_VERSION = 1 };
+enum { BYTE_ORDER_MARK = 0x01020304, FORMAT_VERSION = 2 };
 
 typedef struct Header {
     char magic[8];
@@ -55,6 +55,10 @@ static void add_layers(char settings[CHECKPOINT_SETTINGS_MAX], unsigned layers)
 void checkpoint_describe(const Scene *scene, const RenderOptions *options,
                          char settings[CHECKPOINT_SETTINGS_MAX])
 {
+    static const char *const methods[] = {[INDIRECT_ANY] = "any",
+                                          [INDIRECT_CACHE] = "cache",
+                                          [INDIRECT_GATHER] = "gather",
+                                          [INDIRECT_MAP] = "map"};
     const PlanOptions *plan = &options->plan;
     settings[0] = 0;
     add_line(settings, "pms %s\n", PMS_VERSION);
@@ -68,6 +72,7 @@ void checkpoint_describe(const Scene *scene, const RenderOptions *options,
     add_line(settings, "integrator %s\n", plan->integrator == INTEGRATOR_PATH ? "path" : "photons");
     add_line(settings, "light_radius %.17g\n", plan->light_radius);
     add_line(settings, "gi %s\n", plan->has_indirect ? "on" : "off");
+    add_line(settings, "gi_method %s\n", methods[plan->indirect]);
     add_line(settings, "photons %s\n", plan->has_no_photons ? "off" : "on");
     add_line(settings, "quality %d\n", plan->quality);
 }

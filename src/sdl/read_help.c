@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/read_int.h"
 
+#include <float.h>
 #include <string.h>
 
 enum { LIST_MAX = 1000 }; /* nodes of a list that is copied to grow */
@@ -51,8 +52,9 @@ double read_above_zero(Parser *p, const char *what)
 {
     Span span;
     double value = read_finite(p, what, &span);
-    if (!(value > 0))
-        parse_fail(p, span, "%s wants a number above 0, got %g", what, value);
+    if (!(value > 0 && value <= (double)FLT_MAX))
+        parse_fail(p, span, "%s wants a number above 0 and up to %g, got %g", what, (double)FLT_MAX,
+                   value);
     return value;
 }
 

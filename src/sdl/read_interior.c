@@ -1,7 +1,7 @@
 /* interior and material.  SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/read_int.h"
 
-enum { SAMPLES_MAX = 1000000 };
+enum { SAMPLES_MAX = 1000 };
 
 double read_ior(Parser *p)
 {

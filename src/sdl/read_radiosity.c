@@ -1,7 +1,7 @@
 /* radiosity{} of global_settings.  SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/read_int.h"
 
-enum { RAYS_MAX = 1000000, RECURSION_MAX = 20, NEAREST_MAX = 20 };
+enum { RAYS_MAX = 6000, RECURSION_MAX = 20, NEAREST_MAX = 20 };
 
 /* The further numbers of count and nearest_count steer methods that pms has not. */
 static void skip_second(Parser *p, const char *what)

@@ -9,6 +9,9 @@
 #include "math/eps.h"
 #include "math/spectrum.h"
 
+/* The means over all wavelengths are taken of so many at most. */
+enum { MEAN_BANDS_MAX = 32 };
+
 /* What the steps share. */
 typedef struct Sampling {
     const Tracer *tracer;
@@ -287,8 +290,9 @@ static void disperse(TraceThread *thread, Sampling *s)
     for (int i = 0; i < out->layer_count; i++)
         out->layers[i].reflect = RGB_BLACK;
     Interiors interiors = *s->interiors;
-    for (int i = 0; i < bands; i++) {
-        SpectrumBand band = spectrum_band(i, bands);
+    int looked_at = bands < MEAN_BANDS_MAX ? bands : MEAN_BANDS_MAX;
+    for (int i = 0; i < looked_at; i++) {
+        SpectrumBand band = spectrum_band(i, looked_at);
         SurfaceSample one;
         interiors.wavelength = (float)band.wavelength;
         surface_sample(thread, s->ray, s->hit, &interiors, &one);
