@@ -3,6 +3,9 @@
 
 enum { INTERVALS_MAX = 10000, SAMPLES_MAX = 10000, AA_LEVEL_MAX = 30 };
 
+/* Of density_maps in one another: with each level a place has twice as many. */
+enum { COST_MAX = 1000 };
+
 /* --- density ------------------------------------------------------------------------------ */
 
 static const Pigment *white_pigment(Parser *p, Span span)
@@ -32,6 +35,7 @@ static void read_density_item(Parser *p, Density *density)
             parse_fail(p, head.span, "a density_map wants a pattern like gradient before it");
         density->map = map->map;
         density->map_count = map->map_count;
+        density->cost = map->cost;
         return;
     }
     if (head.kind == KW_COLOR_MAP || head.kind == KW_COLOUR_MAP)
@@ -63,6 +67,18 @@ const Density *read_density(Parser *p)
     return read_density_body(p, word.span, TOKEN_RBRACE);
 }
 
+/* How many patterns a map looks at for a place between two of its entries. */
+static int map_cost(const DensityEntry *entries, size_t count)
+{
+    int most = 0;
+    for (size_t i = 0; i < count; i++) {
+        int before = i > 0 ? 1 + entries[i - 1].density->cost : 0;
+        int own = before + 1 + entries[i].density->cost;
+        most = own > most ? own : most;
+    }
+    return most;
+}
+
 const Density *read_density_map(Parser *p)
 {
     Token word = read_open(p);
@@ -83,7 +99,11 @@ const Density *read_density_map(Parser *p)
     }
     if (count == 0)
         parse_fail(p, word.span, "a density_map wants at least one entry");
-    Density map = {.map = entries, .map_count = (int)count};
+    Density map = {.map = entries, .map_count = (int)count, .cost = map_cost(entries, count)};
+    if (map.cost > COST_MAX)
+        parse_fail(p, word.span,
+                   "density_maps in one another make %d patterns of a place, more than %d",
+                   map.cost, COST_MAX);
     return parse_copy(p, &map, sizeof map);
 }
 

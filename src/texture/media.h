@@ -49,6 +49,7 @@ struct Density {
     const Pigment *pigment;  /* its colours; with a map its pattern only */
     const DensityEntry *map; /* in written order; NULL: none */
     int map_count;
+    int cost; /* patterns of the map that are looked at for one place, at most */
 };
 
 struct Medium {

@@ -128,6 +128,19 @@ static void test_macro_recursion(void **state)
     assert_stops("#macro A() B() #end #macro B() A() #end A()", &options, "macros nest too deep");
 }
 
+/* Each level doubles what a place costs. */
+static void test_density_maps(void **state)
+{
+    (void)state;
+    SdlOptions options = {.max_tokens = 1000000, .threads = 1};
+    assert_stops("#declare D = density { gradient y }\n"
+                 "#declare I = 0; #while (I < 30)\n"
+                 "  #declare D = density { gradient x density_map { [0 D] [1 D] } }\n"
+                 "  #declare I = I + 1;\n"
+                 "#end\n",
+                 &options, "patterns of a place, more than 1000");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -135,6 +148,7 @@ int main(void)
         cmocka_unit_test(test_memory),
         cmocka_unit_test(test_nesting),
         cmocka_unit_test(test_macro_recursion),
+        cmocka_unit_test(test_density_maps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
