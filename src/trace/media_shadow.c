@@ -8,7 +8,7 @@
 
 #include "trace/trace_int.h"
 
-enum { STRETCHES_MAX = 64 };
+enum { PARTS_MAX = 256 /* of a ray that media count in; what lies behind is one of them */ };
 
 /* A part of the ray inside one interior. */
 typedef struct Stretch {
@@ -23,15 +23,17 @@ static const Shape *first_leaf(const Shape *shape)
     return shape;
 }
 
-/* Where the crossings of a solid say that the ray is inside, between 0 and tmax.  Stretches
+typedef void (*StretchVisit)(void *ctx, const Stretch *stretch);
+
+/* Visit where the crossings of a solid say that the ray is inside, between 0 and tmax.  Stretches
  * without end there are left out unless the light dims. */
-static int find_stretches(const Tracer *tracer, const Shape *shape, const CrossList *list,
-                          double tmax, bool is_to_light, Stretch *out)
+static void visit_list(const Tracer *tracer, const Shape *shape, const CrossList *list, double tmax,
+                       bool is_to_light, StretchVisit visit, void *ctx)
 {
-    int count = 0, inside = list->is_inside_before;
+    bool inside = list->is_inside_before;
     double begin = -INFINITY;
     const Shape *leaf = NULL;
-    for (int i = 0; i <= list->count && count < STRETCHES_MAX; i++) {
+    for (int i = 0; i <= list->count; i++) {
         const Crossing *c = i < list->count ? &list->items[i] : NULL;
         double t = c ? c->t : INFINITY;
         if (c && c->change > 0) {
@@ -43,23 +45,24 @@ static int find_stretches(const Tracer *tracer, const Shape *shape, const CrossL
             inside = false;
             if (!(t > 0) || !(begin < tmax) || (t >= tmax && !is_to_light))
                 continue;
-            out[count++] = (Stretch){fmax(0, begin), fmin(tmax, t),
-                                     tracer->scene->surfaces[lender->surface].interior};
+            Stretch stretch = {fmax(0, begin), fmin(tmax, t),
+                               tracer->scene->surfaces[lender->surface].interior};
+            visit(ctx, &stretch);
         }
     }
-    return count;
 }
 
-static int object_stretches(TraceThread *thread, uint32_t object, const Ray *ray, bool is_to_light,
-                            Stretch *out)
+/* Visit the stretches inside an object; `visit` must not ask shapes. */
+static void visit_stretches(TraceThread *thread, uint32_t object, const Ray *ray, bool is_to_light,
+                            StretchVisit visit, void *ctx)
 {
     const Tracer *tracer = thread->tracer;
     const TracedObject *traced = &tracer->objects[object];
     if (traced->shadow == SHADOW_NONE || object_is_missed(traced, ray))
-        return 0;
+        return;
     CrossList list;
     shape_crossings(traced->shape, ray, thread->shapes, &list);
-    return find_stretches(tracer, traced->shape, &list, ray->tmax, is_to_light, out);
+    visit_list(tracer, traced->shape, &list, ray->tmax, is_to_light, visit, ctx);
 }
 
 /* --- what is not hollow ----------------------------------------------------------------------- */
@@ -67,7 +70,7 @@ static int object_stretches(TraceThread *thread, uint32_t object, const Ray *ray
 /* Parts of the ray that are not in solids that are not hollow, in no order. */
 typedef struct OpenParts {
     int count;
-    double begin[STRETCHES_MAX], end[STRETCHES_MAX];
+    double begin[PARTS_MAX], end[PARTS_MAX];
 } OpenParts;
 
 static void cut(OpenParts *open, double begin, double end)
@@ -77,7 +80,7 @@ static void cut(OpenParts *open, double begin, double end)
         if (!(begin < last && end > first))
             continue;
         open->end[i] = fmax(first, begin);
-        if (!(end < last) || open->count == STRETCHES_MAX)
+        if (!(end < last) || open->count == PARTS_MAX)
             continue;
         open->begin[open->count] = end;
         open->end[open->count++] = last;
@@ -90,15 +93,16 @@ typedef struct OpenQuery {
     OpenParts *out;
 } OpenQuery;
 
+static void cut_stretch(void *ctx, const Stretch *stretch)
+{
+    if (!stretch->interior->is_hollow)
+        cut(ctx, stretch->begin, stretch->end);
+}
+
 static void cut_object(OpenQuery *query, uint32_t object)
 {
-    Stretch stretches[STRETCHES_MAX];
-    if (!query->thread->tracer->objects[object].keeps_air_out)
-        return;
-    int count = object_stretches(query->thread, object, query->ray, true, stretches);
-    for (int i = 0; i < count; i++)
-        if (!stretches[i].interior->is_hollow)
-            cut(query->out, stretches[i].begin, stretches[i].end);
+    if (query->thread->tracer->objects[object].keeps_air_out)
+        visit_stretches(query->thread, object, query->ray, true, cut_stretch, query->out);
 }
 
 static bool cut_item(void *ctx, uint32_t item, Ray *ray)
@@ -155,25 +159,46 @@ static Rgb open_transmittance(TraceThread *thread, const MediaHere *here, const 
     return light;
 }
 
+typedef struct Dimming {
+    TraceThread *thread;
+    const Ray *ray;
+    const OpenParts *open;
+    Rgb light;
+} Dimming;
+
+static void dim(void *ctx, const Stretch *stretch)
+{
+    Dimming *d = ctx;
+    MediaHere here;
+    media_of_interior(stretch->interior, &here);
+    d->light = rgb_mul(d->light, open_transmittance(d->thread, &here, d->ray, d->open,
+                                                    stretch->begin, stretch->end));
+}
+
+static void note_stretch(void *ctx, const Stretch *stretch)
+{
+    (void)stretch;
+    *(bool *)ctx = true;
+}
+
 Rgb media_shadow(TraceThread *thread, const Ray *ray, bool is_to_light)
 {
     const Tracer *tracer = thread->tracer;
-    Rgb light = RGB_WHITE;
     OpenParts open;
-    open.count = -1; /* not looked for yet */
-    Stretch stretches[STRETCHES_MAX];
-    for (uint32_t k = 0; k < tracer->media_count && !rgb_is_black(light); k++) {
-        int count = object_stretches(thread, tracer->media[k], ray, is_to_light, stretches);
-        if (count > 0 && open.count < 0)
+    Dimming dimming = {thread, ray, &open, RGB_WHITE};
+    bool is_open_known = false;
+    for (uint32_t k = 0; k < tracer->media_count && !rgb_is_black(dimming.light); k++) {
+        bool is_met = is_open_known;
+        if (!is_met)
+            visit_stretches(thread, tracer->media[k], ray, is_to_light, note_stretch, &is_met);
+        if (!is_met)
+            continue;
+        if (!is_open_known)
             find_open(thread, ray, &open);
-        for (int i = 0; i < count; i++) {
-            const Stretch *s = &stretches[i];
-            MediaHere here;
-            media_of_interior(s->interior, &here);
-            light = rgb_mul(light, open_transmittance(thread, &here, ray, &open, s->begin, s->end));
-        }
+        is_open_known = true;
+        visit_stretches(thread, tracer->media[k], ray, is_to_light, dim, &dimming);
     }
-    return light;
+    return dimming.light;
 }
 
 /* Fog keeps light off, and adds no colour of its own to it. */

@@ -240,6 +240,23 @@ static void shadows_in_smoke(void **state)
           0.1 * (20 - 7.4 + 7.4 * 0.25 * exp(-0.7)), 0.005);
 }
 
+/* One body of so many slabs of smoke between the lamp and the floor. */
+static void shadow_of_many_slabs(void **state)
+{
+    (void)state;
+    check("shadow of a hundred slabs of smoke",
+          look(HEAD "camera { orthographic location <0,1,0> direction -y right x*0.01 up z*0.01 }\n"
+                    "light_source { <0,1000,0> 1 media_attenuation on }\n"
+                    "box { <-1,-1,-1>, <1,0,1> pigment { rgb 1 } finish { ambient 0 diffuse 1 } }\n"
+                    "difference { box { <-1,2,-1>, <1,201,1> }\n"
+                    "  #declare I = 0; #while (I < 99)\n"
+                    "    box { <-2, 3 + 2 * I, -2>, <2, 4 + 2 * I, 2> } #declare I = I + 1; #end\n"
+                    "  hollow pigment { rgbt 1 } finish { ambient 0 diffuse 0 }\n"
+                    "  interior { media { absorption 0.0625 } } }\n",
+               1),
+          exp(-6.25), 1e-4);
+}
+
 static void lights_that_do_not_interact_light_no_media(void **state)
 {
     (void)state;
@@ -415,6 +432,7 @@ int main(void)
         cmocka_unit_test(lamp_in_the_atmosphere),
         cmocka_unit_test(spot_light_in_smoke),
         cmocka_unit_test(shadows_in_smoke),
+        cmocka_unit_test(shadow_of_many_slabs),
         cmocka_unit_test(lights_that_do_not_interact_light_no_media),
         cmocka_unit_test(phase_functions_have_their_mean),
         cmocka_unit_test(phase_samples_follow_the_function),
