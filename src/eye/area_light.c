@@ -152,3 +152,15 @@ Rgb area_shadow(EyeThread *eye, const EyeLight *light, const SurfaceSample *s,
     eye->grid_mark++;
     return rect_mean(&grid, (GridRect){0, 0, area->size1 - 1, area->size2 - 1}, 0);
 }
+
+V3 light_point(EyeThread *eye, const EyeLight *light, V3 p)
+{
+    const Light *source = light->light;
+    if (!light->is_area)
+        return source->location;
+    LightSample center = light_at(source, source->location, p);
+    AreaFrame frame = area_frame(source, center.to_light);
+    int i = (int)(rng_double(&eye->rng) * source->area.size1);
+    int j = (int)(rng_double(&eye->rng) * source->area.size2);
+    return v3_add(source->location, area_offset(source, &frame, i, j, &eye->rng));
+}

@@ -70,6 +70,9 @@ AreaFrame area_frame(const Light *light, V3 to_light);
  * light with jitter. */
 V3 area_offset(const Light *light, const AreaFrame *frame, int i, int j, Rng *rng);
 
+/* Return a point of a light as seen from p: of an area light any of its grid. */
+V3 light_point(EyeThread *eye, const EyeLight *light, V3 p);
+
 /* Return the fraction of an area light's light that arrives, averaged over its grid as the
  * language does it; `center` is the light as seen from its centre. */
 Rgb area_shadow(EyeThread *eye, const EyeLight *light, const SurfaceSample *s,

@@ -145,18 +145,13 @@ static void sum_light(Scatter *s, const Warp *warp, double low, Rgb first, doubl
     sum_light(s, warp, middle, between, high, last, halvings - 1);
 }
 
-static bool is_parallel(const Light *light)
-{
-    return light->is_parallel || light->kind == LIGHT_CYLINDER;
-}
-
 /* Places at equal steps of the angle under which the light is seen. */
 static int breaks_by_angle(const Light *light, const Ray *ray, double begin, double end, double *t)
 {
     double nearest = v3_dot(v3_sub(light->location, ray->o), ray->d);
     double away = v3_dist(light->location, ray_at(ray, nearest));
     away = fmax(away, 1e-6 * (fabs(nearest) + away));
-    if (is_parallel(light) || !(away > 0))
+    if (light_is_parallel(light) || !(away > 0))
         return 0;
     double low = atan2(begin - nearest, away), high = atan2(end - nearest, away);
     for (int i = 0; i < BREAKS_BY_ANGLE; i++)
@@ -241,19 +236,6 @@ static double run_t(const LightRun *run, double part)
 }
 
 /* --- shadows ------------------------------------------------------------------------------ */
-
-/* A point of the light: of an area light any of its grid. */
-static V3 light_point(EyeThread *eye, const EyeLight *light, V3 p)
-{
-    const Light *source = light->light;
-    if (!light->is_area)
-        return source->location;
-    LightSample center = light_at(source, source->location, p);
-    AreaFrame frame = area_frame(source, center.to_light);
-    int i = (int)(rng_double(&eye->rng) * source->area.size1);
-    int j = (int)(rng_double(&eye->rng) * source->area.size2);
-    return v3_add(source->location, area_offset(source, &frame, i, j, &eye->rng));
-}
 
 /* Return what arrives of a light at a place. */
 static Rgb look_at_light(const Scatter *s, double t)

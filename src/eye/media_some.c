@@ -3,18 +3,6 @@
  * Apache-2.0 */
 #include "eye/air_int.h"
 
-/* A point of the light: of an area light any of its grid. */
-static V3 some_point(EyeThread *eye, const EyeLight *light, V3 to_light)
-{
-    const Light *source = light->light;
-    if (!light->is_area)
-        return source->location;
-    AreaFrame frame = area_frame(source, to_light);
-    int i = (int)(rng_double(&eye->rng) * source->area.size1);
-    int j = (int)(rng_double(&eye->rng) * source->area.size2);
-    return v3_add(source->location, area_offset(source, &frame, i, j, &eye->rng));
-}
-
 /* What arrives at p of a light, from a point of it. */
 static Rgb arriving_light(EyeThread *eye, const EyeLight *light, V3 point, V3 p)
 {
@@ -67,7 +55,7 @@ static bool place_by_angle(const MediaProfile *profile, const Ray *ray, V3 point
 Rgb media_scatter_some(EyeThread *eye, const EyeLight *light, const MediaLobes *lobes,
                        const MediaProfile *profile, const Interiors *inside, const Ray *ray)
 {
-    V3 point = some_point(eye, light, direction_to(light, ray->o));
+    V3 point = light_point(eye, light, ray->o);
     double t, u = rng_double(&eye->rng);
     Rgb weight;
     if (is_fading(light->light) ? !place_by_angle(profile, ray, point, u, &t, &weight)

@@ -44,11 +44,6 @@ typedef struct BeamRay {
                        at this place, times the inverse of the density */
 } BeamRay;
 
-static inline bool light_is_parallel(const Light *light)
-{
-    return light->is_parallel || light->kind == LIGHT_CYLINDER;
-}
-
 /* Make the ray at a point of the square.  `area` picks the place on an area light.
  * Returns false where the light does not shine. */
 bool beam_ray(const Beam *beam, V2 square, V2 area, BeamRay *out);

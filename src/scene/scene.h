@@ -85,6 +85,12 @@ typedef struct Light {
     const char *name;              /* "light 1" ... or its identifier */
 } Light;
 
+/* Return true if its rays are parallel: they come from a plane through its location. */
+static inline bool light_is_parallel(const Light *light)
+{
+    return light->is_parallel || light->kind == LIGHT_CYLINDER;
+}
+
 typedef enum CameraKind { CAMERA_PERSPECTIVE, CAMERA_ORTHOGRAPHIC, CAMERA_KIND_COUNT } CameraKind;
 
 typedef struct Camera {

@@ -11,11 +11,6 @@ static double power_or_one(double base, double exponent)
     return exponent == 0 ? 1 : pow(base, exponent);
 }
 
-static bool is_parallel(const Light *light)
-{
-    return light->is_parallel || light->kind == LIGHT_CYLINDER;
-}
-
 static double spot_factor(const Light *light, V3 to_light)
 {
     double cosine = -v3_dot(to_light, light->direction);
@@ -60,7 +55,8 @@ double light_shape_factor(const Light *light, V3 location, V3 p)
 {
     if (light->kind == LIGHT_POINT)
         return 1;
-    V3 to_light = is_parallel(light) ? v3_neg(light->direction) : v3_unit(v3_sub(location, p));
+    V3 to_light =
+        light_is_parallel(light) ? v3_neg(light->direction) : v3_unit(v3_sub(location, p));
     return factor_towards(light, location, p, to_light);
 }
 
@@ -77,7 +73,7 @@ LightSample light_at(const Light *light, V3 location, V3 p)
 {
     LightSample out;
     V3 d = v3_sub(location, p);
-    if (is_parallel(light)) {
+    if (light_is_parallel(light)) {
         out.to_light = v3_neg(light->direction);
         out.distance = v3_dot(d, out.to_light);
     } else {
