@@ -86,7 +86,8 @@ static Rgb brilliant_gather(EyeThread *eye, const PhotonMap *map, const GatherLi
                             const SurfaceSample *s)
 {
     const GatheredPhoton *photons;
-    int count = photon_gather_list(map, s->at.p, s->ng, limits, eye->gather, &photons);
+    GatherLimits own = gather_limits_at(limits, &s->at, s->ng);
+    int count = photon_gather_list(map, s->at.p, s->ng, &own, eye->gather, &photons);
     eye->trace.stats.count[STAT_GATHERS]++;
     eye->trace.stats.count[STAT_GATHERED] += (uint64_t)count;
     Rgb sum = RGB_BLACK;
@@ -101,8 +102,9 @@ static Rgb directional_caustic(EyeThread *eye, const SurfaceSample *s)
 {
     const GatheredPhoton *photons;
     const EyeOptions *options = &eye->options;
-    int count = photon_gather_list(options->caustic, s->at.p, s->ng, &options->caustic_limits,
-                                   eye->gather, &photons);
+    GatherLimits limits = gather_limits_at(&options->caustic_limits, &s->at, s->ng);
+    int count =
+        photon_gather_list(options->caustic, s->at.p, s->ng, &limits, eye->gather, &photons);
     eye->trace.stats.count[STAT_GATHERED] += (uint64_t)count;
     Rgb sum = RGB_BLACK;
     for (int i = 0; i < count; i++) {
@@ -114,13 +116,14 @@ static Rgb directional_caustic(EyeThread *eye, const SurfaceSample *s)
 }
 
 /* Light of a map on the side of n, of which a surface sends on a part in all directions alike. */
-static Rgb side_gather(EyeThread *eye, const PhotonMap *map, const GatherLimits *limits, V3 p, V3 n,
-                       Rgb part)
+static Rgb side_gather(EyeThread *eye, const PhotonMap *map, const GatherLimits *limits,
+                       const ShapePoint *at, V3 n, Rgb part)
 {
     if (rgb_is_black(part))
         return RGB_BLACK;
     Rgb irradiance;
-    int count = photon_gather(map, p, n, limits, eye->gather, &irradiance);
+    GatherLimits own = gather_limits_at(limits, at, n);
+    int count = photon_gather(map, at->p, n, &own, eye->gather, &irradiance);
     eye->trace.stats.count[STAT_GATHERS]++;
     eye->trace.stats.count[STAT_GATHERED] += (uint64_t)count;
     return rgb_mul(irradiance, part);
@@ -129,13 +132,13 @@ static Rgb side_gather(EyeThread *eye, const PhotonMap *map, const GatherLimits 
 static Rgb diffuse_gather(EyeThread *eye, const PhotonMap *map, const GatherLimits *limits,
                           const SurfaceSample *s)
 {
-    return side_gather(eye, map, limits, s->at.p, s->ng, surface_diffuse(s));
+    return side_gather(eye, map, limits, &s->at, s->ng, surface_diffuse(s));
 }
 
 static Rgb back_gather(EyeThread *eye, const PhotonMap *map, const GatherLimits *limits,
                        const SurfaceSample *s)
 {
-    return side_gather(eye, map, limits, s->at.p, v3_neg(s->ng), surface_diffuse_back(s));
+    return side_gather(eye, map, limits, &s->at, v3_neg(s->ng), surface_diffuse_back(s));
 }
 
 Rgb caustic_light(EyeThread *eye, const SurfaceSample *s)

@@ -92,8 +92,10 @@ static Rgb irradiance_there(EyeThread *eye, const SurfaceSample *s, V3 n, double
         return irradiance_at(options->irradiance, &eye->trace, eye->gather, &s->at, n, radius);
     Rgb light = RGB_BLACK;
     *radius = 0;
-    if (options->global)
-        photon_gather(options->global, s->at.p, n, &options->global_limits, eye->gather, &light);
+    if (options->global) {
+        GatherLimits limits = gather_limits_at(&options->global_limits, &s->at, n);
+        photon_gather(options->global, s->at.p, n, &limits, eye->gather, &light);
+    }
     return light;
 }
 
@@ -272,7 +274,7 @@ static int cell_of(const Cells *cells, V3 d, double height)
 static void guide(Cells *cells, EyeThread *eye, const ShapePoint *at, int rays)
 {
     const GatheredPhoton *photons;
-    GatherLimits limits = eye->options.global_limits;
+    GatherLimits limits = gather_limits_at(&eye->options.global_limits, at, cells->n);
     limits.max_photons = GUIDE_PHOTONS;
     limits.min_photons = 0;
     limits.max_radius *= GUIDE_RADII;

@@ -24,6 +24,10 @@
 /* Half the thickness of the slab of GATHER_DISK, in radii. */
 #define GATHER_SLAB 0.2
 
+/* Which photons count on the surface of a solid: those that arrived at its outside, at its inside,
+ * or all. */
+typedef enum GatherSide { GATHER_ALL_SIDES, GATHER_OUTSIDE, GATHER_INSIDE } GatherSide;
+
 typedef struct GatherLimits {
     int max_photons;   /* k nearest; 0: everything within max_radius */
     int min_photons;   /* when fewer are within max_radius, the radius grows to hold so many, up
@@ -34,7 +38,22 @@ typedef struct GatherLimits {
     GatherKernel kernel;
     double normal_cosine; /* photons whose surface normal is further off are ignored; -1: none
                              is.  Above 0 those that arrived on the other side never count. */
+    GatherSide side;      /* when normals are looked at; see gather_side */
 } GatherLimits;
+
+/* Return which photons count for the light of that side of a surface that n points to. */
+static inline GatherSide gather_side(const ShapePoint *at, V3 n)
+{
+    return shape_point_is_inside(at, n) ? GATHER_INSIDE : GATHER_OUTSIDE;
+}
+
+/* Return limits for that side. */
+static inline GatherLimits gather_limits_at(const GatherLimits *limits, const ShapePoint *at, V3 n)
+{
+    GatherLimits own = *limits;
+    own.side = gather_side(at, n);
+    return own;
+}
 
 #define GATHER_LIMITS_DEFAULT                                                                      \
     ((GatherLimits){.max_photons = 100,                                                            \

@@ -20,7 +20,7 @@ enum {
     PLACES_MOST = 3 * LOOKUP_MORE,
     CHUNK_PLACES = 256,
     IRRADIANCE_RNG = 0x697272,
-    FLAG_CLUTTERED = 1 /* of a place: not all of the disk is seen from it */
+    FLAG_CLUTTERED = 1 /* of a place, beside PHOTON_INSIDE: not all of the disk is seen from it */
 };
 
 /* Heights of the rays along a surface, in radii: above roughness, below what stands there. */
@@ -29,6 +29,10 @@ enum {
 /* Photons whose mean place is further off, in radii, lie to one side: on a whole disk it is within
  * this with near certainty. */
 #define ASIDE_MOST 0.2
+
+/* Bound on how far a place is off its surface, relative to its distance from the map's centre: it
+ * is rounded to floats. */
+#define PLACE_ROUNDING 0x1p-22
 
 /* Surfaces turned further away than this are others: of photons and of places. */
 #define PHOTON_COSINE 0.5
@@ -95,8 +99,11 @@ typedef struct PlaceWork {
 
 /* A place and its disk. */
 typedef struct Disk {
-    V3 p, n, s, t; /* s and t lie in the surface */
+    V3 p, n, s, t;  /* s and t lie in the surface */
+    bool is_inside; /* of a solid */
     double radius;
+    double rounding; /* of p, scene units */
+    double lift;     /* of what looks along the surface, scene units */
 } Disk;
 
 /* Does the way from a to b meet nothing? */
@@ -112,7 +119,7 @@ static bool is_clear(TraceThread *thread, V3 a, V3 b)
 
 static V3 above(const Disk *disk, double x, double y)
 {
-    V3 p = v3_mad(disk->p, CLEAR_HEIGHT * disk->radius, disk->n);
+    V3 p = v3_mad(disk->p, disk->lift, disk->n);
     return v3_mad(v3_mad(p, x * disk->radius, disk->s), y * disk->radius, disk->t);
 }
 
@@ -130,21 +137,38 @@ static bool disk_is_clear(TraceThread *thread, const Disk *disk)
     return true;
 }
 
+/* Set how high above the surface to look along it: inside a solid not through its other face. */
+static void set_lift(TraceThread *thread, Disk *disk)
+{
+    Hit hit;
+    disk->lift = CLEAR_HEIGHT * disk->radius;
+    Ray ray = {disk->p, disk->n, disk->rounding, 2 * disk->lift};
+    if (disk->is_inside && trace_closest(thread, &ray, RAY_LIGHT, &hit))
+        disk->lift = hit.t / 2;
+}
+
+/* Is there surface of the disk within `down` below p? */
+static bool is_surface_below(TraceThread *thread, const Disk *disk, V3 p, double down)
+{
+    Hit hit;
+    Ray ray = {p, v3_neg(disk->n), 0, down};
+    return trace_closest(thread, &ray, RAY_LIGHT, &hit) &&
+           fabs(v3_dot(hit.point.ng, disk->n)) > PHOTON_COSINE &&
+           shape_point_is_inside(&hit.point, disk->n) == disk->is_inside;
+}
+
 /* The part of the disk that is surface and seen from its middle, weighed as photons are. */
 static double disk_part(TraceThread *thread, const Disk *disk, Rng *rng)
 {
     double found = 0;
-    double down = (CLEAR_HEIGHT + GATHER_SLAB) * disk->radius;
+    double down = disk->lift + GATHER_SLAB * disk->radius;
     uint64_t key = rng_u64(rng);
     for (int i = 0; i < AREA_RAYS; i++) {
-        Hit hit;
         V2 at = warp_disk(sample_2d((uint32_t)i, key));
         V3 p = above(disk, at.u, at.v);
         if (!is_clear(thread, above(disk, 0, 0), p))
             continue;
-        Ray ray = {p, v3_neg(disk->n), 0, down};
-        if (trace_closest(thread, &ray, RAY_LIGHT, &hit) &&
-            fabs(v3_dot(hit.point.ng, disk->n)) > PHOTON_COSINE)
+        if (is_surface_below(thread, disk, p, down))
             found += gather_kernel(PLACE_KERNEL, at.u * at.u + at.v * at.v);
     }
     return fmax(found, 1) / AREA_RAYS;
@@ -184,7 +208,7 @@ static Rgb sum_photons(TraceThread *thread, const PhotonMap *map, const Disk *di
     for (int i = 0; i < count; i++) {
         Photon photon = photon_map_at(map, index[i]);
         V3 n = normal14_decode(photon.flags >> 2);
-        V3 p = v3_mad(photon_place(map, &photon), CLEAR_HEIGHT * disk->radius, n);
+        V3 p = v3_mad(photon_place(map, &photon), disk->lift, n);
         double x = photon_distance2(map, &photon, disk->p, disk->n) / (disk->radius * disk->radius);
         if (!is_all_clear && !is_clear(thread, above(disk, 0, 0), p))
             continue;
@@ -201,11 +225,16 @@ static void estimate(PlaceWork *work, TraceThread *thread, GatherScratch *scratc
 {
     Photon *place = &work->places[number];
     Rng rng = rng_at(work->seed, IRRADIANCE_RNG, number);
+    Disk disk = {.p = photon_place(work->photons, place),
+                 .n = normal14_decode(place->flags >> 2),
+                 .is_inside = (place->flags & PHOTON_INSIDE) != 0};
+    V3 offset = v3_sub(disk.p, photon_map_center(work->photons));
+    disk.rounding = PLACE_ROUNDING * v3_len(offset);
     const GatherLimits limits = {.max_photons = PLACE_PHOTONS,
                                  .max_radius = work->radius,
                                  .shape = GATHER_DISK,
-                                 .normal_cosine = PHOTON_COSINE};
-    Disk disk = {.p = photon_place(work->photons, place), .n = normal14_decode(place->flags >> 2)};
+                                 .normal_cosine = PHOTON_COSINE,
+                                 .side = disk.is_inside ? GATHER_INSIDE : GATHER_OUTSIDE};
     const uint32_t *index;
     double radius2;
     v3_frame(disk.n, &disk.s, &disk.t);
@@ -214,6 +243,7 @@ static void estimate(PlaceWork *work, TraceThread *thread, GatherScratch *scratc
     Rgb irradiance = RGB_BLACK;
     uint16_t flags = 0;
     if (count > 0 && radius2 > 0 && isfinite(radius2)) {
+        set_lift(thread, &disk);
         bool is_all_clear = disk_is_clear(thread, &disk);
         double part = 1;
         if (!is_all_clear || mean_aside(work->photons, &disk, index, count) > ASIDE_MOST)
@@ -226,7 +256,7 @@ static void estimate(PlaceWork *work, TraceThread *thread, GatherScratch *scratc
     rgbe_encode(irradiance, &rng, place->rgbe);
     place->phi = (uint8_t)code;
     place->theta = (uint8_t)(code >> 8);
-    place->flags = (uint16_t)((place->flags & ~3) | flags);
+    place->flags = (uint16_t)((place->flags & ~FLAG_CLUTTERED) | flags);
 }
 
 static void estimate_chunk(void *ctx, size_t index, int thread)
@@ -381,13 +411,14 @@ static int sort_places(const PhotonMap *map, const uint32_t *index, int count, V
 
 /* Find places that face as n does, of each way the `most` nearest; *is_all says whether there are
  * no more. */
-static int find_places(const IrradianceMap *map, GatherScratch *scratch, V3 p, V3 n, int most,
-                       NearPlace *out, bool *is_all)
+static int find_places(const IrradianceMap *map, GatherScratch *scratch, const ShapePoint *at, V3 n,
+                       int most, NearPlace *out, bool *is_all)
 {
     const GatherLimits limits = {.max_photons = most + 1,
                                  .max_radius = map->reach,
                                  .shape = GATHER_DISK,
-                                 .normal_cosine = PLACE_COSINE};
+                                 .normal_cosine = PLACE_COSINE,
+                                 .side = gather_side(at, n)};
     double largest = fmax(fabs(n.x), fmax(fabs(n.y), fabs(n.z)));
     int found = 0;
     *is_all = true;
@@ -396,22 +427,23 @@ static int find_places(const IrradianceMap *map, GatherScratch *scratch, V3 p, V
         double radius2;
         if (!map->places[way] || facing(n, way) < largest - FACING_SLACK)
             continue;
-        int count = photon_nearest(map->places[way], p, n, &limits, scratch, &index, &radius2);
+        int count = photon_nearest(map->places[way], at->p, n, &limits, scratch, &index, &radius2);
         *is_all = *is_all && count <= most;
-        found = sort_places(map->places[way], index, count < most ? count : most, p, n, out, found);
+        found =
+            sort_places(map->places[way], index, count < most ? count : most, at->p, n, out, found);
     }
     return found;
 }
 
-/* Find the places that may speak for p, best first.  The nearest is not the best: beside a bright
- * patch, where places crowd, it would be one of the patch, and the patch would grow. */
-static int find_speakers(const IrradianceMap *map, GatherScratch *scratch, V3 p, V3 n,
-                         NearPlace *out)
+/* Find the places that may speak for a point, best first.  The nearest is not the best: beside a
+ * bright patch, where places crowd, it would be one of the patch, and the patch would grow. */
+static int find_speakers(const IrradianceMap *map, GatherScratch *scratch, const ShapePoint *at,
+                         V3 n, NearPlace *out)
 {
     bool is_all;
-    int found = find_places(map, scratch, p, n, LOOKUP_PLACES, out, &is_all);
+    int found = find_places(map, scratch, at, n, LOOKUP_PLACES, out, &is_all);
     if (!is_all && !(found > 0 && out[0].is_near))
-        found = find_places(map, scratch, p, n, LOOKUP_MORE, out, &is_all);
+        found = find_places(map, scratch, at, n, LOOKUP_MORE, out, &is_all);
     return found;
 }
 
@@ -420,7 +452,7 @@ Rgb irradiance_at(const IrradianceMap *map, TraceThread *thread, GatherScratch *
 {
     NearPlace near[PLACES_MOST];
     *radius = 0;
-    int count = map ? find_speakers(map, scratch, at->p, n, near) : 0;
+    int count = map ? find_speakers(map, scratch, at, n, near) : 0;
     for (int i = 0; i < count; i++) {
         const Photon *place = &near[i].place;
         double lift = CLEAR_HEIGHT * near[i].radius * sqrt(near[i].off2);

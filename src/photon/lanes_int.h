@@ -34,6 +34,24 @@ static inline unsigned lanes_not_above(const float value[LANES], float limit)
 #endif
 }
 
+/* Return the mask of lanes whose bits chosen by `bits` are `wanted`. */
+static inline unsigned lanes_with_bits(const uint16_t value[LANES], unsigned bits, unsigned wanted)
+{
+#if defined(__SSE2__)
+    __m128i chosen = _mm_set1_epi16((short)bits), want = _mm_set1_epi16((short)wanted);
+    __m128i low = _mm_loadu_si128((const __m128i *)(const void *)value);
+    __m128i high = _mm_loadu_si128((const __m128i *)(const void *)(value + LANES / 2));
+    low = _mm_cmpeq_epi16(_mm_and_si128(low, chosen), want);
+    high = _mm_cmpeq_epi16(_mm_and_si128(high, chosen), want);
+    return (unsigned)_mm_movemask_epi8(_mm_packs_epi16(low, high));
+#else
+    unsigned mask = 0;
+    for (int i = 0; i < LANES; i++)
+        mask |= (unsigned)((value[i] & bits) == wanted) << i;
+    return mask;
+#endif
+}
+
 /* Append the chosen lanes of `value` and their numbers first + lane; both arrays need room for
  * LANES items.  Returns how many. */
 static inline unsigned lanes_pack(unsigned mask, const float value[LANES], uint32_t first,

@@ -14,14 +14,18 @@ typedef struct Photon {
     float pos[3];       /* scene units, relative to the map's centre */
     uint8_t rgbe[4];    /* power, shared exponent */
     uint8_t phi, theta; /* direction it came from, quantised */
-    uint16_t flags;     /* high 14 bits: surface normal on the side it arrived at; low 2: 0.  In
-                           media: PHOTON_FOCUSED or 0 */
+    uint16_t flags;     /* high 14 bits: surface normal on the side it arrived at; low 2:
+                           PHOTON_INSIDE or 0.  In media: PHOTON_FOCUSED or 0 */
 } Photon;
 
 static_assert(sizeof(Photon) == 20, "a photon is 20 bytes");
 
 /* A photon in media that came over mirrors and glass only. */
 enum { PHOTON_FOCUSED = 1 };
+
+/* A photon that hit the surface of a solid from inside.  In a thin one it lies where those on the
+ * outside of the other face lie, with the same normal. */
+enum { PHOTON_INSIDE = 2 };
 
 /* The shared exponent of RGBE: a channel is byte * 2^(exponent - RGBE_BIAS).  Exponents below
  * RGBE_LEAST are not used, so that every step is a normal float; exponent 0 means black. */

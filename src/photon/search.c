@@ -34,10 +34,11 @@ typedef struct Search {
     const PhotonMap *map;
     FoundPhotons *found;
     float q[3], n[3];
-    float slab;       /* 1/GATHER_SLAB^2, or 0 for a ball */
-    float cosine2;    /* signed square of the least cosine */
-    bool has_normals; /* look at them at all */
-    size_t wanted;    /* k, or SIZE_MAX: all */
+    float slab;               /* 1/GATHER_SLAB^2, or 0 for a ball */
+    float cosine2;            /* signed square of the least cosine */
+    bool has_normals;         /* look at them at all */
+    uint16_t side_bits, side; /* the flags looked at, and how they are to be */
+    size_t wanted;            /* k, or SIZE_MAX: all */
     float radius2;
 } Search;
 
@@ -229,6 +230,7 @@ static void visit_block(Search *search, uint32_t number)
     if (search->has_normals) {
         block_facing(search, block, facing);
         mask &= lanes_not_above(facing, 0);
+        mask &= lanes_with_bits(block->flags, search->side_bits, search->side);
     }
     if (found->count + LANES > found->capacity)
         make_room(search);
@@ -348,7 +350,9 @@ static Search make_search(const PhotonMap *map, V3 q, V3 n, const GatherLimits *
                     .slab =
                         limits->shape == GATHER_DISK ? (float)(1 / (GATHER_SLAB * GATHER_SLAB)) : 0,
                     .cosine2 = (float)(cosine * fabs(cosine)),
-                    .has_normals = cosine > -1};
+                    .has_normals = cosine > -1,
+                    .side_bits = limits->side == GATHER_ALL_SIDES ? 0 : PHOTON_INSIDE,
+                    .side = limits->side == GATHER_INSIDE ? PHOTON_INSIDE : 0};
 }
 
 /* Return k as a number of photons there may be room for: when memory is out, fewer. */

@@ -227,13 +227,15 @@ static bool is_kept(const Walk *walk, const Hit *hit)
 static void keep(Walk *walk, const Hit *hit, float least, PhotonList *out, WalkResult *result)
 {
     Rgb flux = flux_here(walk), power = rgb_mul(flux, walk->weight);
-    bool is_inside = v3_dot(hit->point.ng, walk->ray.d) > 0;
-    V3 ng = is_inside ? v3_neg(hit->point.ng) : hit->point.ng;
-    unsigned normal = (unsigned)normal14_encode(ng) << 2;
+    V3 n = hit->point.ng;
+    n = v3_dot(n, walk->ray.d) > 0 ? v3_neg(n) : n;
+    unsigned flags = (unsigned)normal14_encode(n) << 2;
+    if (shape_point_is_inside(&hit->point, n))
+        flags |= PHOTON_INSIDE;
     float times = thin_out(walk, power, least);
     settle(walk, flux, rgb_scale(walk->weight, times), result);
     result->stored +=
-        store(walk, hit->point.p, v3_neg(walk->ray.d), normal, rgb_scale(power, times), out);
+        store(walk, hit->point.p, v3_neg(walk->ray.d), flags, rgb_scale(power, times), out);
 }
 
 /* --- the way ---------------------------------------------------------------------------- */

@@ -231,6 +231,7 @@ void shape_point(const Crossing *crossing, const Ray *ray, ShapePoint *out)
 {
     const Shape *leaf = crossing->leaf;
     V3 p = ray_at(ray, crossing->t);
+    out->has_inside = shape_is_solid(leaf);
     if (leaf->kind == SHAPE_TRIANGLE) {
         triangle_point(leaf, crossing, p, out);
         to_world(crossing, out->p, out->p_error, out);

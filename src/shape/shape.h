@@ -206,8 +206,16 @@ typedef struct ShapePoint {
     V3 p;
     double p_error;
     V3 ng, ns;
+    bool has_inside; /* the surface is a solid's: ng tells its sides apart.  That of triangles side by
+                        side may point either way. */
 } ShapePoint;
 void shape_point(const Crossing *crossing, const Ray *ray, ShapePoint *out);
+
+/* Is the side that n points to the inside of a solid? */
+static inline bool shape_point_is_inside(const ShapePoint *point, V3 n)
+{
+    return point->has_inside && v3_dot(point->ng, n) < 0;
+}
 
 /* Return the language's uv of the point p on `part` of `leaf`; u and v are the crossing's. */
 V2 shape_uv(const Shape *leaf, uint32_t part, double u, double v, V3 p);

@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include "lit_eye.h"
+#include "lit_methods.h"
 
 #include "math/sample.h"
 
@@ -453,6 +454,35 @@ static void paper_glows_on_both_sides(void **state)
     }
 }
 
+/* --- thin solids ----------------------------------------------------------------------------- */
+
+/* Row S12: inside a slab that lets light through diffusely, and is far thinner than an estimate is
+ * wide, lie as many photons as outside, with the same normals; in a furnace twice as many as there
+ * should be would show by any method. */
+static void thin_solids_keep_their_sides_apart(void **state)
+{
+    (void)state;
+    const char *text =
+        "#version 3.7;\n"
+        "global_settings { assumed_gamma 1 max_trace_level 100 adc_bailout 1e-5\n"
+        "  pms { global_photons 50000 } radiosity { count 60 } }\n"
+        "#default { pigment { rgb 1 } finish { ambient 0 diffuse 0.5 emission 0.5 } }\n"
+        "camera { location <0,0,-0.9> look_at z angle 60 right x up y }\n"
+        "box { -1, 1 hollow }\n"
+        "box { <-0.8,-0.8,0.1>, <0.8,0.8,0.1001>\n"
+        "  finish { diffuse 0.5, 0.5 emission 0 } }\n";
+    static const int ways[] = {BY_CACHE, BY_MAP, BY_PASSES};
+    bool is_good = true;
+    for (int i = 0; i < 3; i++) {
+        Method method = methods[ways[i]];
+        method.seeds = 2;
+        method.samples = 1;
+        method.passes = method.passes > 0 ? 8 : 0;
+        is_good &= method_expect("thin slab that lets light through", text, &method, 1, 0.03);
+    }
+    assert_true(is_good);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -463,6 +493,7 @@ int main(void)
         cmocka_unit_test(flags_never_count_twice),
         cmocka_unit_test(the_eye_adds_three_parts),
         cmocka_unit_test(paper_glows_on_both_sides),
+        cmocka_unit_test(thin_solids_keep_their_sides_apart),
     };
     return cmocka_run_group_tests_name("light_paths", tests, NULL, NULL);
 }
