@@ -206,8 +206,8 @@ typedef struct ShapePoint {
     V3 p;
     double p_error;
     V3 ng, ns;
-    bool has_inside; /* the surface is a solid's: ng tells its sides apart.  That of triangles side by
-                        side may point either way. */
+    bool has_inside; /* the surface is a solid's: ng tells its sides apart.  Those of triangles
+                        beside each other may point either way. */
 } ShapePoint;
 void shape_point(const Crossing *crossing, const Ray *ray, ShapePoint *out);
 
