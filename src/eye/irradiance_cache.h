@@ -41,9 +41,9 @@ Rgb cache_read_irradiance(const CacheRead *read);
 
 typedef struct IrradianceCache IrradianceCache;
 
-/* Make an empty cache for a scene around `center`, of `radius` scene units; `reach` is the largest error records will be read with.  Free with
- * irradiance_cache_free. */
-IrradianceCache *irradiance_cache_new(V3 center, double radius, double reach); /* NULL when memory is out */
+/* Make an empty cache for a scene around `center`, of `radius` scene units; `reach` is the largest
+ * error records will be read with.  NULL when memory is out.  Free with irradiance_cache_free. */
+IrradianceCache *irradiance_cache_new(V3 center, double radius, double reach);
 void irradiance_cache_free(IrradianceCache *cache);
 size_t irradiance_cache_count(const IrradianceCache *cache);
 

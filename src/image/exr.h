@@ -10,8 +10,8 @@ typedef struct ExrOptions {
 } ExrOptions;
 
 /* Write every layer to one part: the beauty as R,G,B,A, others as name.channel; zip-compressed,
- * Rec.709 chromaticities, `meta` as string attributes.  Whole or not at all.  The bytes are the same on any
- * number of threads. */
+ * Rec.709 chromaticities, `meta` as string attributes.  Whole or not at all.  The bytes are the
+ * same on any number of threads. */
 Status exr_write(Diag *diag, const char *path, const Image *image, const Meta *meta,
                  ExrOptions options);
 

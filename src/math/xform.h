@@ -14,7 +14,8 @@ typedef struct Xform {
 } Xform;
 
 #define XFORM_IDENTITY                                                                             \
-    ((Xform){{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}, {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}})
+    ((Xform){{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}},                                           \
+             {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}})
 
 static inline V3 matrix_point(const double m[3][4], V3 p)
 {

@@ -20,8 +20,8 @@
  *              one map, the volume map.
  *
  * Looked at by the eye, direct light (L D and L M, by shadow rays that targets block), the caustic
- * map, the global and the volume map count each path once.  Gather rays take glow and the global map
- * alone, so there it holds everything. */
+ * map, the global and the volume map count each path once.  Gather rays take glow and the global
+ * map alone, so there it holds everything. */
 typedef enum MapKind { MAP_CAUSTIC, MAP_GLOBAL, MAP_FOCUS, MAP_VOLUME, MAP_COUNT } MapKind;
 
 /* Are photons for this map sent at targets, over mirrors and glass only? */

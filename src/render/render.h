@@ -30,8 +30,9 @@ typedef struct PassRadii {
 
 typedef struct RenderResult RenderResult;
 
-/* plan.is_progressive: many passes of fresh photons and samples, whose mean is the picture.  The gather radius shrinks
- * from pass to pass such that noise and blur both go to zero, in the memory of one pass. */
+/* plan.is_progressive: many passes of fresh photons and samples, whose mean is the picture.  The
+ * gather radius shrinks from pass to pass such that noise and blur both go to zero, in the memory
+ * of one pass. */
 typedef struct ProgressiveOptions {
     uint64_t passes;        /* in all, with those of runs before; 0: no limit */
     double seconds;         /* no pass is begun that would end later; 0: no limit */
@@ -72,8 +73,8 @@ struct RenderResult {
     Stats stats;
     PhotonBooks books;
     Plan plan;        /* its memory is the scene's arena */
-    uint64_t caustic_hash, global_hash, volume_hash; /* of the photon maps' bytes (of the last pass),
-                                           0: no map */
+    uint64_t caustic_hash, global_hash, volume_hash; /* of the photon maps' bytes (of the last
+                                           pass), 0: no map */
 };
 
 /* Render.  ERR_INTERRUPTED leaves no image, but of a progressive render that of the passes done,

@@ -143,7 +143,7 @@ struct Parser {
     size_t seed_count, seed_capacity;
 };
 
-/* --- parse_fail.c ------------------------------------------------------------------------------ */
+/* --- parse_fail.c ----------------------------------------------------------------------------- */
 
 noreturn void parse_fail_memory(Parser *p);
 /* Fail on a word nobody knows: "unknown `what` ...; did you mean ...?" */

@@ -10,7 +10,8 @@
  * pi in it, physics has 4 S where the language has S: a medium whose scattering neither adds nor
  * loses light has extinction 4.
  *
- * Nodes live in the scene arena and are immutable once read.  SPDX-License-Identifier: Apache-2.0 */
+ * Nodes live in the scene arena and are immutable once read.
+ * SPDX-License-Identifier: Apache-2.0 */
 #ifndef PMS_TEXTURE_MEDIA_H
 #define PMS_TEXTURE_MEDIA_H
 

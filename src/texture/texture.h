@@ -133,7 +133,7 @@ typedef struct Interior {
     const Medium *const *media; /* in written order; they count in hollow objects only */
     int media_count;
     bool is_hollow; /* of hollow objects: set when the scene is built */
-    int priority;    /* where interiors overlap the highest counts; of equals the one entered last */
+    int priority;   /* where interiors overlap the highest counts; of equals the one entered last */
     DispersionKind dispersion;
     int dispersion_samples; /* wavelengths that the eye sees through it; at least 2 */
     double coefficients[DISPERSION_COEFFICIENTS]; /* w in micrometres */

@@ -20,7 +20,7 @@ typedef struct MediaList {
 typedef struct MediaHere {
     bool is_open; /* no solid that is not hollow is around: fog and rainbows are seen */
     bool is_homogeneous;
-    bool is_conserving; /* scattering adds no light: see medium_gain; unset by the functions below */
+    bool is_conserving; /* scattering adds no light: see medium_gain; the functions here unset it */
     int list_count; /* 0: nothing does anything to light */
     MediaList lists[INTERIORS_MAX + 1];
 } MediaHere;
@@ -126,8 +126,8 @@ bool media_collide(const MediaProfile *profile, Rgb light, Rng *rng, double *t, 
 /* Return what a medium scatters at p of light that collides, per scene unit. */
 Rgb medium_kept(const Medium *medium, V3 p);
 
-/* Draw one of the media at p by how much it has, as `share` says, of `light`; *weight is its share over
- * the chance.  NULL: none has any. */
+/* Draw one of the media at p by how much it has, as `share` says, of `light`; *weight is its share
+ * over the chance.  NULL: none has any. */
 const Medium *media_choose(const MediaHere *here, V3 p, Rgb light,
                            Rgb (*share)(const Medium *medium, V3 p), Rng *rng, Rgb *weight);
 

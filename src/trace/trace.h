@@ -100,8 +100,8 @@ typedef struct Interiors {
 } Interiors;
 
 /* Fill `out` with the interiors that contain p (for a camera or light inside glass): those of
- * objects that let light through, by priority, then by size; where there are media, fog or rainbows those of opaque
- * ones too. */
+ * objects that let light through, by priority, then by size; where there are media, fog or rainbows
+ * those of opaque ones too. */
 void interiors_at(const Tracer *tracer, V3 p, Interiors *out);
 
 /* Return what the innermost interior lets pass of light that goes t scene units in it.  Every leg
@@ -143,8 +143,8 @@ typedef struct SurfaceSample {
     Rgb through;            /* throughput of the transmitted ray: filter, 1 if total reflection */
     V3 transmit_dir;        /* unit */
     double ior_ratio;       /* of this side to the far side */
-    int spectrum;           /* above 0: light of all wavelengths is dispersed here, and the eye wants
-                               this many bands of it; see surface_sample */
+    int spectrum; /* above 0: light of all wavelengths is dispersed here, and the eye wants
+                     this many bands of it; see surface_sample */
     Interiors inside_after; /* of the transmitted ray */
     const SceneSettings *settings;
 } SurfaceSample;

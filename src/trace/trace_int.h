@@ -24,7 +24,8 @@ typedef struct TracedObject {
     bool is_hidden[RAY_KIND_COUNT];
     bool is_closed; /* made of closed solids: normals tell entering from leaving */
     bool may_transmit; /* some surface of it lets light through */
-    bool keeps_air_out; /* not hollow, shadow rays may be inside of it, and there is air to keep out */
+    bool keeps_air_out; /* not hollow, shadow rays may be inside of it, and there is air to keep out
+                         */
 } TracedObject;
 
 /* Objects grouped for bundles of shadow rays. */
@@ -101,7 +102,7 @@ enum { PASSAGES_MAX = 1 + HIT_TIES_MAX };
 /* What becomes of the interiors of a ray. */
 typedef struct InteriorStep {
     double ior_from, ior_to; /* at the ray's wavelength; equal: no bend */
-    int spectrum;            /* bands that light of all wavelengths is dispersed into; 0: it is not */
+    int spectrum; /* bands that light of all wavelengths is dispersed into; 0: it is not */
 } InteriorStep;
 
 /* Pass surfaces in one place, those left before those entered; `after` is set to what a ray in

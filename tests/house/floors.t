@@ -1,8 +1,9 @@
 #!/bin/sh
 # Each folder of src/ includes only the folders src/FLOORS names for it; private headers
-# (*_int.h) are included only in their own folder; base names are unique in the tree.
+# (*_int.h) are included only in their own folder; base names are unique in the tree; lines and files
+# are no longer than people read them.
 cd "$(dirname "$0")/../.." || exit 1
-echo "1..3"
+echo "1..5"
 
 bad=$(grep -rnoE '^#include "[a-z]+/[^"]*"' src --include='*.[ch]' --include='*.cpp' | awk -F: '
     BEGIN {
@@ -21,3 +22,9 @@ bad=$(grep -rnE '^#include "[a-z]+/[a-z0-9_]*_int\.h"' src tests --include='*.[c
 
 bad=$(find src -name '*.c' -o -name '*.cpp' | sed 's,.*/,,; s,\.[a-z]*$,,' | sort | uniq -d | sed 's/^/# /')
 [ -z "$bad" ] && echo "ok 3 - unique names" || { echo "not ok 3 - unique names"; echo "$bad"; }
+
+bad=$(find src tests -name '*.[ch]' -o -name '*.cpp' | xargs awk 'length($0) > 100 { print "# " FILENAME ":" FNR }')
+[ -z "$bad" ] && echo "ok 4 - lines of 100 columns" || { echo "not ok 4 - lines of 100 columns"; echo "$bad"; }
+
+bad=$(find src tests -name '*.[ch]' -o -name '*.cpp' | xargs wc -l | awk '$1 > 800 && $2 != "total" { print "# " $0 }')
+[ -z "$bad" ] && echo "ok 5 - files of 800 lines" || { echo "not ok 5 - files of 800 lines"; echo "$bad"; }

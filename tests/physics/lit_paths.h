@@ -27,8 +27,9 @@ static inline double error_of(double sum, double squares, int n)
     return sqrt(fmax(0, squares / n - mean * mean) / (n - 1));
 }
 
-static inline void take_group(EyeThread *eye, const CameraRays *camera, int group, Expected expected,
-                       const void *ctx, double part[PART_COUNT], double *wanted)
+static inline void take_group(EyeThread *eye, const CameraRays *camera, int group,
+                              Expected expected, const void *ctx, double part[PART_COUNT],
+                              double *wanted)
 {
     for (int i = 0; i < PATH_GROUP; i++) {
         EyeSample sample;

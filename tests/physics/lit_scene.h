@@ -73,8 +73,11 @@ static inline void lit_make_file(LitScene *lit, const char *path, int threads, u
     memset(lit, 0, sizeof *lit);
     diag_init(&lit->diag, lit_listen, lit);
     static const char *const library = "stdlib";
-    SdlOptions options = {
-        .library_paths = &library, .library_path_count = 1, .width = 320, .height = 240, .threads = 1};
+    SdlOptions options = {.library_paths = &library,
+                          .library_path_count = 1,
+                          .width = 320,
+                          .height = 240,
+                          .threads = 1};
     Status status = sdl_load(&lit->diag, path, &options, &lit->scene);
     lit_prepare(lit, status, threads, seed, PLAN_OPTIONS_DEFAULT);
     status = photon_pass(lit->tracer, &lit->options, &lit->diag, &lit->stats, &lit->maps);

@@ -320,10 +320,11 @@ static void trace_levels_count_surfaces_seen(void **state)
 static void straight_rays_need_no_level_but_one(void **state)
 {
     (void)state;
-    const char *format = "#version 3.7; global_settings { assumed_gamma 1 max_trace_level %d } " LOOK_DOWN
-                         "background { rgb 1 }"
-                         "#declare I = 0; #while (I < 20) disc { <0,I/4,0>, y, 9"
-                         " pigment { rgbt 1 } } #declare I = I + 1; #end";
+    const char *format =
+        "#version 3.7; global_settings { assumed_gamma 1 max_trace_level %d } " LOOK_DOWN
+        "background { rgb 1 }"
+        "#declare I = 0; #while (I < 20) disc { <0,I/4,0>, y, 9"
+        " pigment { rgbt 1 } } #declare I = I + 1; #end";
     for (int level = 1; level <= 2; level++) {
         char text[512];
         float c[4];
@@ -336,9 +337,10 @@ static void straight_rays_need_no_level_but_one(void **state)
 static void weights_below_adc_bailout_are_not_followed(void **state)
 {
     (void)state;
-    const char *format = "#version 3.7; global_settings { assumed_gamma 1 adc_bailout 0.1 } " LOOK_DOWN
-                         "background { rgb 1 } disc { 0, y, 9 pigment { rgb 0 }"
-                         " finish { ambient 0 reflection %g } }";
+    const char *format =
+        "#version 3.7; global_settings { assumed_gamma 1 adc_bailout 0.1 } " LOOK_DOWN
+        "background { rgb 1 } disc { 0, y, 9 pigment { rgb 0 }"
+        " finish { ambient 0 reflection %g } }";
     for (int i = 0; i < 2; i++) {
         char text[512];
         float c[4];
@@ -415,8 +417,8 @@ static void samples_that_are_not_numbers_are_counted_and_dropped(void **state)
 {
     (void)state;
     RenderOptions options = options_for(4, 4);
-    Rendered r = render(HEAD LOOK_DOWN "plane { y, 0 pigment { rgb 1e30 } finish { ambient 1e30 } }",
-                        &options);
+    Rendered r = render(
+        HEAD LOOK_DOWN "plane { y, 0 pigment { rgb 1e30 } finish { ambient 1e30 } }", &options);
     assert_int_equal(r.status, OK);
     assert_int_equal(r.result.stats.count[STAT_NAN_SAMPLE], 16);
     assert_true(pixel(&r, "", 0, 0)[0] == 0);
