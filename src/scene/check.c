@@ -2,8 +2,7 @@
  * items.  SPDX-License-Identifier: Apache-2.0 */
 #include "scene/scene.h"
 
-/* --- what follows from the looks -----------------------------------------------------------------
- */
+/* --- what follows from the looks ----------------------------------------------------------- */
 
 static bool mesh_texture_has(const Surface *s, bool (*has)(const Texture *texture))
 {
@@ -52,8 +51,7 @@ static void set_object_flags(Scene *scene)
     }
 }
 
-/* --- photon targets
- * -------------------------------------------------------------------------------- */
+/* --- photon targets ------------------------------------------------------------------------ */
 
 static bool light_asks(const Scene *scene, bool is_reflection)
 {
@@ -135,8 +133,7 @@ static void mark_targets(Scene *scene, Diag *diag)
                   "photons are asked for, but no object with bounds reflects or refracts");
 }
 
-/* --- problems
- * ----------------------------------------------------------------------------------------- */
+/* --- problems ------------------------------------------------------------------------------ */
 
 static bool check_camera(const Scene *scene, Diag *diag)
 {
@@ -185,8 +182,7 @@ static void check_content(const Scene *scene, Diag *diag)
         diag_warn(diag, WARN_RENDER, SPAN_NONE, "there is no object in the scene");
 }
 
-/* --- media
- * ----------------------------------------------------------------------------------------- */
+/* --- media --------------------------------------------------------------------------------- */
 
 static void check_media(const Scene *scene, Diag *diag)
 {

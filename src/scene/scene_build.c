@@ -30,8 +30,7 @@ typedef struct Finisher {
     const Interior *solid, *hollow; /* an interior, and its copy for hollow objects */
 } Finisher;
 
-/* --- adding ------------------------------------------------------------------------------------
- */
+/* --- adding -------------------------------------------------------------------------------- */
 
 const Texture *scene_build_default(SceneBuild *build)
 {
@@ -70,8 +69,7 @@ bool scene_build_add(SceneBuild *build, Node *node)
     return true;
 }
 
-/* --- looks --------------------------------------------------------------------------------------
- */
+/* --- looks --------------------------------------------------------------------------------- */
 
 /* The box that bounded_by gives: inside all of its objects. */
 static Bound bound_of_nodes(Node *const *nodes, int count);
@@ -208,8 +206,7 @@ static uint32_t add_surface(Finisher *f, const Node *node, const Looks *looks)
     return scene->surface_count++;
 }
 
-/* --- shapes --------------------------------------------------------------------------------------
- */
+/* --- shapes -------------------------------------------------------------------------------- */
 
 static void add_light(Finisher *f, const Node *node)
 {
@@ -336,8 +333,7 @@ static bool build_shape(Finisher *f, const Node *node, const Looks *parent, Shap
     return true;
 }
 
-/* --- objects
- * -------------------------------------------------------------------------------------- */
+/* --- objects ------------------------------------------------------------------------------- */
 
 static void add_object(Finisher *f, const Node *node, const Looks *parent)
 {

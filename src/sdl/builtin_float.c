@@ -16,8 +16,7 @@ static int32_t to_int(double value)
     return whole >= INT32_MIN && whole <= INT32_MAX ? (int32_t)whole : INT32_MIN;
 }
 
-/* --- random streams ----------------------------------------------------------------------------
- */
+/* --- random streams ------------------------------------------------------------------------ */
 
 double random_seed(Parser *p, double number)
 {
@@ -38,8 +37,7 @@ double random_next(Parser *p, double stream, Span span)
     return *state / 4294967295.0;
 }
 
-/* --- constants -----------------------------------------------------------------------------------
- */
+/* --- constants ----------------------------------------------------------------------------- */
 
 static double days_now(void)
 {
@@ -105,8 +103,7 @@ static bool constant(Parser *p, TokenKind word, Terms *out)
     }
 }
 
-/* --- functions of one float
- * ------------------------------------------------------------------------ */
+/* --- functions of one float ---------------------------------------------------------------- */
 
 typedef double (*Function)(double);
 
@@ -166,8 +163,7 @@ static double call_function(Parser *p, TokenKind word, Function function)
     return function(checked_argument(p, word, x, span_join(begin, p->last)));
 }
 
-/* --- functions of two floats, and of lists
- * ------------------------------------------------------------ */
+/* --- functions of two floats, and of lists ------------------------------------------------- */
 
 static double checked_pow(Parser *p, double base, double exponent, Span span)
 {
@@ -244,8 +240,7 @@ static double call_select(Parser *p)
     return value < 0 ? negative : value == 0 ? zero : positive;
 }
 
-/* --- functions of strings, arrays and vectors
- * ------------------------------------------------------------ */
+/* --- functions of strings, arrays and vectors ---------------------------------------------- */
 
 static double call_of_text(Parser *p, TokenKind word)
 {

@@ -127,8 +127,7 @@ int text_compare(Text a, Text b)
     }
 }
 
-/* --- literals
- * -------------------------------------------------------------------------------------- */
+/* --- literals ------------------------------------------------------------------------------ */
 
 /* Return the place of byte `at` of a literal in its file. */
 static Span literal_span(const Token *literal, size_t at, size_t length)
@@ -217,8 +216,7 @@ void parse_set_utf8(Parser *p, bool is_utf8)
     p->is_utf8 = is_utf8;
 }
 
-/* --- functions
- * ---------------------------------------------------------------------------------------- */
+/* --- functions ----------------------------------------------------------------------------- */
 
 /* Append a number as printf's %L.Pf: width below 0 pads with zeros, precision below 0 is 6. */
 static void add_number(Parser *p, Builder *b, double value, double width, double precision)

@@ -82,8 +82,7 @@ void nest_leave(Parser *p)
     p->nest--;
 }
 
-/* --- tokens as they stand ------------------------------------------------------------------------
- */
+/* --- tokens as they stand ------------------------------------------------------------------ */
 
 static void check_rarely(Parser *p, Span span)
 {
@@ -138,8 +137,7 @@ void cursor_move(Parser *p, const Token *at)
     p->is_ready = false;
 }
 
-/* --- tokens as readers see them
- * --------------------------------------------------------------------- */
+/* --- tokens as readers see them ------------------------------------------------------------ */
 
 /* Return true if the directive at `hash` must wait until the value before it is assigned. */
 static bool is_held(const Parser *p, const Token *hash)

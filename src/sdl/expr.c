@@ -92,8 +92,7 @@ static void combine(Parser *p, TokenKind op, Terms *a, Terms *b)
         a->n[i] = operate(p, op, a->n[i], b->n[i]);
 }
 
-/* --- primaries -----------------------------------------------------------------------------------
- */
+/* --- primaries ----------------------------------------------------------------------------- */
 
 static void parse_group(Parser *p, Terms *out)
 {
@@ -225,8 +224,7 @@ static void parse_factor(Parser *p, Terms *out)
     nest_leave(p);
 }
 
-/* --- operators
- * ------------------------------------------------------------------------------------- */
+/* --- operators ----------------------------------------------------------------------------- */
 
 static void term_after(Parser *p, Terms *out)
 {
@@ -335,8 +333,7 @@ void parse_full(Parser *p, Terms *out)
     nest_leave(p);
 }
 
-/* --- what readers ask for ------------------------------------------------------------------------
- */
+/* --- what readers ask for ------------------------------------------------------------------ */
 
 /* `after`: the token before the expression, named in the message when it is a word. */
 double terms_float(Parser *p, const Terms *terms, Span begin, TokenKind after)

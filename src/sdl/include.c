@@ -13,8 +13,7 @@
 #include <strings.h>
 #include <unistd.h>
 
-/* --- where a file may be
- * --------------------------------------------------------------------------- */
+/* --- where a file may be ------------------------------------------------------------------- */
 
 /* Join a folder ("" for none) and a name; returns false when the path is too long. */
 static bool join(char out[PATH_MAX_BYTES], const char *folder, const char *name)
@@ -160,8 +159,7 @@ const char *file_find(Parser *p, const char *name, const char *const *extensions
     return is_found ? parse_copy(p, path, strlen(path) + 1) : NULL;
 }
 
-/* --- opening
- * -------------------------------------------------------------------------------------------- */
+/* --- opening ------------------------------------------------------------------------------- */
 
 static TokenFile *file_load(Parser *p, const char *path)
 {

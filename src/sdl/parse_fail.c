@@ -116,8 +116,7 @@ noreturn void parse_fail_here(Parser *p, const char *where)
     parse_fail(p, token->span, "%s fits nowhere %s", token_kind_text(token->kind), where);
 }
 
-/* --- memory: what runs out here ends the parse --------------------------------------------------
- */
+/* --- memory: what runs out here ends the parse --------------------------------------------- */
 
 void *parse_no_null(Parser *p, const void *node)
 {

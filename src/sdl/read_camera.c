@@ -16,8 +16,7 @@ typedef struct CameraDraft {
     Span look_at_span;
 } CameraDraft;
 
-/* --- items
- * --------------------------------------------------------------------------------------------- */
+/* --- items --------------------------------------------------------------------------------- */
 
 static void read_angle(Parser *p, CameraDraft *d)
 {
@@ -153,8 +152,7 @@ static void read_camera_item(Parser *p, CameraDraft *d)
     }
 }
 
-/* --- from items to vectors
- * ---------------------------------------------------------------------------- */
+/* --- from items to vectors ----------------------------------------------------------------- */
 
 /* Turn the vectors so that direction points at look_at and right is level against sky; their
  * lengths and handedness stay. */

@@ -83,8 +83,7 @@ Node *read_difference(Parser *p)
     return node;
 }
 
-/* --- clipped_by, bounded_by
- * ------------------------------------------------------------------------ */
+/* --- clipped_by, bounded_by ---------------------------------------------------------------- */
 
 /* Copy a list of nodes: each transform of the object moves both lists. */
 static Node **copy_nodes(Parser *p, Node *const *from, int count)

@@ -51,8 +51,7 @@ static void remove_albedo(Finish *f)
         f->specular = scaled(f->specular, 1 / specular_factor(f));
 }
 
-/* --- items
- * ------------------------------------------------------------------------------------------- */
+/* --- items --------------------------------------------------------------------------------- */
 
 static float read_amount(Parser *p, const char *what)
 {

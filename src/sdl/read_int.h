@@ -37,8 +37,7 @@ const void *const *read_append(Parser *p, const void *const *list, int *count, c
 /* Grow a full array of the scene arena for one more item. */
 void *read_grow(Parser *p, void *items, size_t count, size_t *capacity, size_t item_size);
 
-/* --- objects
- * -------------------------------------------------------------------------------------- */
+/* --- objects ------------------------------------------------------------------------------- */
 
 /* Read an object if the next token begins one (a keyword or the name of an object); NULL if
  * not.  The node is the caller's own. */
@@ -84,8 +83,7 @@ void read_object_photons(Parser *p, PhotonFlags *flags);
 /* A triangle without area, or with a normal without direction, is dropped with a warning. */
 bool read_triangle_is_flat(const V3 corner[3]);
 
-/* --- looks
- * ----------------------------------------------------------------------------------------- */
+/* --- looks --------------------------------------------------------------------------------- */
 
 /* Blocks with their keyword.  `base` is what they start from and is not changed. */
 const Pigment *read_pigment(Parser *p, const Pigment *base);
@@ -123,8 +121,7 @@ const Texture *read_layers(Parser *p, const Texture *under, const Texture *over)
 /* Return the texture objects start from (#default). */
 const Texture *read_default_texture(Parser *p);
 
-/* --- the rest of a scene
- * ------------------------------------------------------------------------------ */
+/* --- the rest of a scene ------------------------------------------------------------------- */
 
 const Camera *read_camera(Parser *p);
 const Sky *read_sky_sphere(Parser *p);

@@ -55,8 +55,7 @@ static void read_point_at(Parser *p, Light *light)
     light->point_at = parse_v3(p);
 }
 
-/* --- area lights
- * -------------------------------------------------------------------------------------- */
+/* --- area lights --------------------------------------------------------------------------- */
 
 static int read_area_size(Parser *p)
 {
@@ -129,8 +128,7 @@ static void check_area(Parser *p, Span span, AreaLight *area)
         parse_fail(p, span, "a circular area_light wants at least 2 lamps along each axis");
 }
 
-/* --- light_source
- * --------------------------------------------------------------------------------------- */
+/* --- light_source -------------------------------------------------------------------------- */
 
 static void read_light_photons(Parser *p, Light *light)
 {

@@ -95,8 +95,7 @@ static void add_triangle(Parser *p, MeshDraft *d, const MeshTriangle *t)
     m->triangle_count++;
 }
 
-/* --- mesh
- * ------------------------------------------------------------------------------------------ */
+/* --- mesh ---------------------------------------------------------------------------------- */
 
 /* Read `texture { NAME }`: in a mesh it is a look of one triangle. */
 static void read_triangle_texture(Parser *p, MeshDraft *d, MeshTriangle *t)
@@ -216,8 +215,7 @@ Node *read_mesh(Parser *p)
     }
 }
 
-/* --- mesh2
- * ----------------------------------------------------------------------------------------- */
+/* --- mesh2 --------------------------------------------------------------------------------- */
 
 /* Take the word of a list, its brace and its count. */
 static uint32_t read_list_count(Parser *p)

@@ -2,8 +2,7 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/read_int.h"
 
-/* --- which object
- * ----------------------------------------------------------------------------------- */
+/* --- which object -------------------------------------------------------------------------- */
 
 typedef struct ObjectRule {
     TokenKind word;
@@ -94,8 +93,7 @@ Node *read_object(Parser *p)
     return node ? node : read_object_block(p);
 }
 
-/* --- modifiers
- * ---------------------------------------------------------------------------------------- */
+/* --- modifiers ----------------------------------------------------------------------------- */
 
 static const Texture *texture_of(Parser *p, const Node *node)
 {
@@ -297,8 +295,7 @@ void read_object_modifiers(Parser *p, Node *node, TokenKind object_word)
         read_object_modifier(p, node, object_word);
 }
 
-/* --- photons
- * ------------------------------------------------------------------------------------------ */
+/* --- photons ------------------------------------------------------------------------------- */
 
 void read_object_photons(Parser *p, PhotonFlags *flags)
 {

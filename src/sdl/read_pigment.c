@@ -1,8 +1,7 @@
 /* pigment, its patterns and colour maps.  SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/read_int.h"
 
-/* --- color_map
- * ------------------------------------------------------------------------------------- */
+/* --- color_map ----------------------------------------------------------------------------- */
 
 typedef struct MapDraft {
     MapEntry *entries;
@@ -53,8 +52,7 @@ const ColorMap *read_color_map(Parser *p)
     return map;
 }
 
-/* --- patterns
- * ---------------------------------------------------------------------------------------- */
+/* --- patterns ------------------------------------------------------------------------------ */
 
 static Color5 color5(float r, float g, float b)
 {
@@ -144,8 +142,7 @@ bool read_pigment_type(Parser *p, Pigment *pigment)
     return true;
 }
 
-/* --- modifiers
- * ----------------------------------------------------------------------------------------- */
+/* --- modifiers ----------------------------------------------------------------------------- */
 
 static bool read_wave(Parser *p, Pattern *pattern)
 {

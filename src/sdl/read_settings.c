@@ -3,8 +3,7 @@
 
 enum { TRACE_LEVEL_MAX = 256, GATHER_MAX = 1000000 };
 
-/* --- photons
- * ------------------------------------------------------------------------------------------- */
+/* --- photons ------------------------------------------------------------------------------- */
 
 static void read_gather(Parser *p, PhotonSettings *photons)
 {
@@ -122,8 +121,7 @@ void read_global_photons(Parser *p, PhotonSettings *photons)
     photons->is_on = photons->gather_max > 0;
 }
 
-/* --- pms: what the common language has no word for
- * ------------------------------------------------------ */
+/* --- pms: what the common language has no word for ----------------------------------------- */
 
 /* Take one of a list of words and return its number. */
 static int read_choice(Parser *p, const char *what, const char *const words[], int count,
@@ -180,8 +178,7 @@ void read_pms_settings(Parser *p, PmsSettings *pms)
     }
 }
 
-/* --- global_settings
- * -------------------------------------------------------------------------------------- */
+/* --- global_settings ----------------------------------------------------------------------- */
 
 static void read_assumed_gamma(Parser *p, SceneSettings *settings)
 {

@@ -158,8 +158,7 @@ Node *read_disc(Parser *p)
     return read_leaf(p, shape_disc(parse_arena(p), center, normal, radius, hole));
 }
 
-/* --- triangles -----------------------------------------------------------------------------------
- */
+/* --- triangles ----------------------------------------------------------------------------- */
 
 bool read_triangle_is_flat(const V3 corner[3])
 {

@@ -2,8 +2,7 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/read_int.h"
 
-/* --- top level
- * ------------------------------------------------------------------------------------------- */
+/* --- top level ----------------------------------------------------------------------------- */
 
 static void read_camera_statement(Parser *p)
 {
@@ -82,9 +81,7 @@ void read_statement(Parser *p)
         parse_no_null(p, NULL);
 }
 
-/* --- values
- * ------------------------------------------------------------------------------------------------
- */
+/* --- values -------------------------------------------------------------------------------- */
 
 static void set_value(Value *out, ValueKind kind, const void *node, Span span)
 {
@@ -174,9 +171,7 @@ bool read_value(Parser *p, Value *out)
     return node != NULL;
 }
 
-/* --- #default
- * ------------------------------------------------------------------------------------------------
- */
+/* --- #default ------------------------------------------------------------------------------ */
 
 static void read_default_item(Parser *p, const Texture **texture)
 {

@@ -55,8 +55,7 @@ static double reflectance(double n1, double n2, double sine1)
     return 0.5 * (rs * rs + rp * rp);
 }
 
-/* --- what a ray is in ---------------------------------------------------------------------------
- */
+/* --- what a ray is in ---------------------------------------------------------------------- */
 
 /* A cup of water with an ice cube and a bubble, on a slab of glass.  `off`: how far the water
  * reaches into the cup; negative: a gap. */
@@ -178,8 +177,7 @@ static void test_lists_in_a_turned_scene(void **state)
     }
 }
 
-/* --- one interface ------------------------------------------------------------------------------
- */
+/* --- one interface ------------------------------------------------------------------------- */
 
 /* What became of a ray. */
 typedef struct Passed {
@@ -357,8 +355,7 @@ static void test_nested_furnace(void **state)
     }
 }
 
-/* --- priority -----------------------------------------------------------------------------------
- */
+/* --- priority ------------------------------------------------------------------------------ */
 
 static void add_ice_in_water(World *w, const Interior *cube)
 {
@@ -447,8 +444,7 @@ static void test_priority_is_the_same_both_ways(void **state)
     world_done(&w);
 }
 
-/* --- the eye inside ------------------------------------------------------------------------------
- */
+/* --- the eye inside ------------------------------------------------------------------------ */
 
 static void test_the_eye_inside(void **state)
 {

@@ -96,8 +96,7 @@ static void glass_sphere_parallel_light(void **state)
     check_rings(parallel_light, true);
 }
 
-/* --- the picture of it -------------------------------------------------------------------------
- */
+/* --- the picture of it --------------------------------------------------------------------- */
 
 enum { RINGS = 1600 };
 #define RING_WIDTH 0.001

@@ -47,8 +47,7 @@ static double reflectance(double n1, double n2, double sine1)
     return 0.5 * (rs * rs + rp * rp);
 }
 
-/* --- a prism, ray by ray ------------------------------------------------------------------------
- */
+/* --- a prism, ray by ray ------------------------------------------------------------------- */
 
 #define APEX_DEG 40
 #define HALF_APEX (APEX_DEG * PMS_PI / 360)
@@ -158,8 +157,7 @@ static void from_glass_to_glass(void **state)
     world_done(&w);
 }
 
-/* --- what the eye sees --------------------------------------------------------------------------
- */
+/* --- what the eye sees --------------------------------------------------------------------- */
 
 #define HEAD                                                                                       \
     "#version 3.7;\nglobal_settings { assumed_gamma 1 max_trace_level 60 adc_bailout 1e-5 }\n"
@@ -292,8 +290,7 @@ static void dispersion_of_one_is_none(void **state)
     }
 }
 
-/* --- what photons bring -------------------------------------------------------------------------
- */
+/* --- what photons bring -------------------------------------------------------------------- */
 
 /* A thin beam through a prism of glass onto a screen.  Its middle meets the left side at
  * (-t tan(apex/2), 1 - t), t being STRIKE. */
@@ -490,8 +487,7 @@ static void reflected_photons_are_white(void **state)
     lit_done(&lit);
 }
 
-/* --- paths --------------------------------------------------------------------------------------
- */
+/* --- paths --------------------------------------------------------------------------------- */
 
 /* Paths of one wavelength each find what the eye sees in many bands. */
 static void paths_see_what_the_eye_sees(void **state)

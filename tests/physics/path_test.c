@@ -128,8 +128,7 @@ static void endless_mirrors(void **state)
     assert_int_equal(mean.stats.count[STAT_TRACE_LIMIT], 0);
 }
 
-/* --- furnaces -----------------------------------------------------------------------------------
- */
+/* --- furnaces ------------------------------------------------------------------------------ */
 
 /* In even light of radiance 1, radiance is reflectance; where nothing is lost nothing is seen. */
 static void furnace(void **state)
@@ -187,8 +186,7 @@ static void reflection_exponent(void **state)
     check("exponent", mean.sum, 0.4, 0);
 }
 
-/* --- transparent things
- * --------------------------------------------------------------------------- */
+/* --- transparent things -------------------------------------------------------------------- */
 
 #define FLOOR "plane { y, 0 pigment { rgb 1 } finish { ambient 0 diffuse 1 } }\n"
 #define LOOKING_DOWN "camera { orthographic location <0,0.5,0> direction -y right x up z }\n"
@@ -268,8 +266,7 @@ static void floor_under_water(void **state)
     assert_true(mean.part_error[PART_CAUSTIC] < 0.01);
 }
 
-/* --- lights in a mirror -------------------------------------------------------------------------
- */
+/* --- lights in a mirror -------------------------------------------------------------------- */
 
 /* A mirror floor, a light above it and a ceiling that only the mirror lights: each light is as if
  * it stood, turned over, below the floor. */
@@ -363,8 +360,7 @@ static void lights_without_a_size(void **state)
     lit_done(&lit);
 }
 
-/* --- against the photon maps
- * ---------------------------------------------------------------------- */
+/* --- against the photon maps --------------------------------------------------------------- */
 
 /* All the light that a glass ball brings from an area light to a square of the floor. */
 static void caustic_of_a_glass_ball(void **state)

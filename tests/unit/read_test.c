@@ -56,8 +56,7 @@ static const Pigment *pigment_of(const Scene *scene, int object)
     return scene->surfaces[object].texture->layers[0].pigment;
 }
 
-/* --- objects -------------------------------------------------------------------------------------
- */
+/* --- objects ------------------------------------------------------------------------------- */
 
 static void test_negative_sizes_mean_their_absolute_value(void **state)
 {
@@ -361,9 +360,7 @@ static void test_area_light(void **state)
     scene_free(scene);
 }
 
-/* --- camera
- * ------------------------------------------------------------------------------------------------
- */
+/* --- camera -------------------------------------------------------------------------------- */
 
 static void test_camera_angle_and_look_at(void **state)
 {
@@ -431,9 +428,7 @@ static void test_focal_blur(void **state)
     scene_free(scene);
 }
 
-/* --- settings
- * ------------------------------------------------------------------------------------------------
- */
+/* --- settings ------------------------------------------------------------------------------ */
 
 static void test_global_settings(void **state)
 {
@@ -482,9 +477,7 @@ static void test_sky_and_background(void **state)
     scene_free(scene);
 }
 
-/* --- accidents
- * ---------------------------------------------------------------------------------------------------
- */
+/* --- accidents ----------------------------------------------------------------------------- */
 
 /* Every block there is, so that each allocation of the readers fails once. */
 static const char everything[] =

@@ -97,8 +97,7 @@ static Node *lamp(World *w, V3 location)
     return node;
 }
 
-/* --- tests -------------------------------------------------------------------------------------
- */
+/* --- tests --------------------------------------------------------------------------------- */
 
 static void test_empty_scene_is_good_and_warns(void **state)
 {
@@ -439,8 +438,7 @@ static void test_user_bounds_serve_infinite_objects_only(void **state)
     world_free(w);
 }
 
-/* --- targets and problems ----------------------------------------------------------------------
- */
+/* --- targets and problems ------------------------------------------------------------------ */
 
 static Node *mirror_ball(World *w, V3 center)
 {
