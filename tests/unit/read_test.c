@@ -198,7 +198,7 @@ static void test_mesh_textures_are_listed_once(void **state)
     scene_free(scene);
 }
 
-/* --- looks --------------------------------------------------------------------------------------- */
+/* --- looks --------------------------------------------------------------------------------- */
 
 static void test_layers_lie_in_written_order(void **state)
 {
@@ -318,7 +318,7 @@ static void test_interior_and_material(void **state)
     scene_free(scene);
 }
 
-/* --- lights -------------------------------------------------------------------------------------- */
+/* --- lights -------------------------------------------------------------------------------- */
 
 static void test_light_angles_and_kinds(void **state)
 {
