@@ -293,6 +293,10 @@ static double photon_spacing(const Emission *emission)
     return sqrt(estimate / (double)count);
 }
 
+/* At least this part of the photons asked for is sent: a beam much thinner than its target lights
+ * so little of it that a spacing over all of the target would leave it next to none. */
+#define LEAST_PART (1.0 / 32)
+
 /* Return how many photons to send, or, before the pilot, at most. */
 static double photons_wanted(const Emission *emission, bool is_after_pilot)
 {
@@ -304,6 +308,8 @@ static double photons_wanted(const Emission *emission, bool is_after_pilot)
         double photons = spaced_photons(beam, spacing);
         wanted += is_after_pilot ? photons * (beam->flux > 0 ? beam->filled : 0) : photons;
     }
+    if (wanted > 0)
+        wanted = fmax(wanted, LEAST_PART * (double)tracer_plan(emission->tracer)->caustic_photons);
     if (wanted <= SPACED_PHOTONS_MAX)
         return ceil(wanted);
     if (is_after_pilot && !emission->options->is_repeat)
