@@ -102,22 +102,6 @@ enum { RINGS = 1600 };
 #define RING_WIDTH 0.001
 #define PIXEL 0.0125 /* of a picture 320 wide of a floor 4 wide */
 
-/* Irradiance of the floor under the point light, by rings. */
-static void fan_profile(double profile[RINGS])
-{
-    enum { RAYS = 8000000 };
-    double most = asin(1 / 4.5);
-    memset(profile, 0, RINGS * sizeof *profile);
-    for (int i = 0; i < RAYS; i++) {
-        double radius, length, angle = most * (i + 0.5) / RAYS;
-        if (!through_sphere(angle, 0, &radius, &length) || radius >= RINGS * RING_WIDTH)
-            continue;
-        int ring = (int)(radius / RING_WIDTH);
-        profile[ring] += 2 * sin(angle) * most / RAYS * length * length /
-                         (RING_WIDTH * RING_WIDTH * (2 * ring + 1));
-    }
-}
-
 /* The mean of what the eye would see at a distance from the axis. */
 static double seen_at(LitScene *lit, double radius)
 {
@@ -156,7 +140,7 @@ static void profile_and_edge(void **state)
     static double expected[RINGS];
     double near_edge[STEPS];
     LitScene lit;
-    fan_profile(expected);
+    fan_profile(expected, RINGS, RING_WIDTH);
     make_sphere(&lit, point_light, table_is_long() ? 4000000 : 1000000);
     for (double radius = 0.2; radius < 1.15; radius += 0.1) {
         double seen = seen_at(&lit, radius), wanted = expected[(int)(radius / RING_WIDTH)];

@@ -153,28 +153,12 @@ static void a_closed_sphere_is_evenly_lit(void **state)
 enum { RINGS = 700 };
 #define RING_WIDTH 0.003
 
-/* Irradiance of the floor by distance from the axis. */
-static void fan_profile(double profile[RINGS])
-{
-    enum { RAYS = 2000000 };
-    double most = asin(1 / 4.5);
-    memset(profile, 0, RINGS * sizeof *profile);
-    for (int i = 0; i < RAYS; i++) {
-        double radius, length, angle = most * (i + 0.5) / RAYS;
-        if (!through_sphere(angle, 0, &radius, &length) || radius >= RINGS * RING_WIDTH)
-            continue;
-        int ring = (int)(radius / RING_WIDTH);
-        profile[ring] += 2 * sin(angle) * most / RAYS * length * length /
-                         (RING_WIDTH * RING_WIDTH * (2 * ring + 1));
-    }
-}
-
 /* Mean of the profile over each pixel; 0 where a pixel is not of the smooth part. */
 static void fill_truth(double truth[PIXELS])
 {
     enum { POINTS = 16 };
     double profile[RINGS], step = 2 * HALF / SIDE;
-    fan_profile(profile);
+    fan_profile(profile, RINGS, RING_WIDTH);
     for (int i = 0; i < PIXELS; i++) {
         double x = (i % SIDE - SIDE / 2) * step, z = (SIDE / 2 - i / SIDE - 1) * step;
         double middle = hypot(x + step / 2, z + step / 2);

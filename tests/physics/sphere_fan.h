@@ -42,4 +42,21 @@ static inline bool through_sphere(double angle, double aside, double *radius, do
     return true;
 }
 
+/* Irradiance of the floor under a point light of colour 1 at height 6, by rings of `width`. */
+static inline void fan_profile(double *profile, int rings, double width)
+{
+    enum { RAYS = 8000000 };
+    double most = asin(1 / 4.5);
+    for (int i = 0; i < rings; i++)
+        profile[i] = 0;
+    for (int i = 0; i < RAYS; i++) {
+        double radius, length, angle = most * (i + 0.5) / RAYS;
+        if (!through_sphere(angle, 0, &radius, &length) || radius >= rings * width)
+            continue;
+        int ring = (int)(radius / width);
+        profile[ring] +=
+            2 * sin(angle) * most / RAYS * length * length / (width * width * (2 * ring + 1));
+    }
+}
+
 #endif
