@@ -7,22 +7,12 @@
 #include <cmocka.h>
 
 #include "../physics/lit_scene.h"
+#include "../physics/fresnel_law.h"
 
 #define GLASSY                                                                                     \
     "pigment { rgbt 1 } finish { ambient 0 diffuse 0 conserve_energy reflection { 0, 1 fresnel "   \
     "on } }\n"
 #define REFRACTS " photons { target refraction on reflection off collect off } }\n"
-
-static double reflectance(double n1, double n2, double sine1)
-{
-    double sine2 = n1 / n2 * sine1;
-    if (sine2 >= 1)
-        return 1;
-    double c1 = sqrt(1 - sine1 * sine1), c2 = sqrt(1 - sine2 * sine2);
-    double rs = (n1 * c1 - n2 * c2) / (n1 * c1 + n2 * c2);
-    double rp = (n1 * c2 - n2 * c1) / (n1 * c2 + n2 * c1);
-    return 0.5 * (rs * rs + rp * rp);
-}
 
 typedef struct Sum {
     double flux, error, x; /* x: mean place */

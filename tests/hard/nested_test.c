@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "../unit/world.h"
+#include "../physics/fresnel_law.h"
 
 static const Interior glass = {.ior = 1.5}, water = {.ior = 1.33}, ice = {.ior = 1.31},
                       solid_ice = {.ior = 1.31, .priority = 1};
@@ -42,17 +43,6 @@ static Shape *minus(World *w, Shape *a, Shape *b)
     parts[1] = b;
     shape_invert(b);
     return shape_csg(w->scene.arena, SHAPE_INTERSECTION, parts, 2);
-}
-
-static double reflectance(double n1, double n2, double sine1)
-{
-    double sine2 = n1 / n2 * sine1;
-    if (sine2 >= 1)
-        return 1;
-    double c1 = sqrt(1 - sine1 * sine1), c2 = sqrt(1 - sine2 * sine2);
-    double rs = (n1 * c1 - n2 * c2) / (n1 * c1 + n2 * c2);
-    double rp = (n1 * c2 - n2 * c1) / (n1 * c2 + n2 * c1);
-    return 0.5 * (rs * rs + rp * rp);
 }
 
 /* --- what a ray is in ---------------------------------------------------------------------- */

@@ -13,6 +13,7 @@
 
 #include "math/spectrum.h"
 #include "render/render.h"
+#include "fresnel_law.h"
 
 static const Interior language_glass = {.ior = 1.5,
                                         .dispersion = DISPERSION_RATIO,
@@ -35,17 +36,6 @@ static const Interior language_glass = {.ior = 1.5,
                              .dispersion_samples = 7,
                              .coefficients = {1.03961212, 0.00600069867, 0.231792344, 0.0200179144,
                                               1.01046945, 103.560653}};
-
-static double reflectance(double n1, double n2, double sine1)
-{
-    double sine2 = n1 / n2 * sine1;
-    if (sine2 >= 1)
-        return 1;
-    double c1 = sqrt(1 - sine1 * sine1), c2 = sqrt(1 - sine2 * sine2);
-    double rs = (n1 * c1 - n2 * c2) / (n1 * c1 + n2 * c2);
-    double rp = (n1 * c2 - n2 * c1) / (n1 * c2 + n2 * c1);
-    return 0.5 * (rs * rs + rp * rp);
-}
 
 /* --- a prism, ray by ray ------------------------------------------------------------------- */
 
