@@ -10,9 +10,9 @@ typedef struct EyeLight {
     const Light *light;
     int index; /* among the scene's lights */
     bool has_shadow, is_area, has_highlights;
-    bool makes_caustics; /* the caustic map brings what targets refract of it */
+    bool makes_caustics; /* the caustic map alone brings what targets refract of it */
     bool lights_media;   /* media scatter its light */
-    bool makes_volume;   /* the volume map brings what targets refract of it */
+    bool makes_volume;   /* the volume map alone brings what targets refract of it */
 } EyeLight;
 
 /* Radiance along a ray, by where the light comes from. */

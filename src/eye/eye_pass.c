@@ -15,21 +15,18 @@ static EyeLight eye_light(const EyeThread *eye, int index)
     const Plan *plan = eye->plan;
     const Light *light = &eye->scene->lights[index];
     bool has_area = light->area.size1 > 0 && light->area.size2 > 0;
-    /* In one of many passes an empty map is one by chance: the light it stands for must not come
-     * straight instead. */
-    bool has_caustics = eye->options.caustic || eye->options.is_progressive;
-    bool has_volume = eye->options.volume || eye->options.is_progressive;
+    /* The plan decides, not the map: where photons were sent and none landed, the light they stand
+     * for must not come straight instead. */
+    bool is_refracted = plan->light_makes_caustics[index] && light->photon_refraction != TRI_OFF;
     return (EyeLight){
         .light = light,
         .index = index,
         .has_shadow = !light->is_shadowless && plan_has(plan, FEATURE_SHADOWS),
         .is_area = has_area && !light->is_shadowless && plan_has(plan, FEATURE_AREA_LIGHTS),
         .has_highlights = !light->is_shadowless && plan_has(plan, FEATURE_HIGHLIGHTS),
-        .makes_caustics = plan->light_makes_caustics[index] && has_caustics &&
-                          light->photon_refraction != TRI_OFF,
+        .makes_caustics = is_refracted,
         .lights_media = light->lights_media && !light->is_shadowless,
-        .makes_volume = plan->light_makes_caustics[index] && plan->has_volume_focus && has_volume &&
-                        light->photon_refraction != TRI_OFF,
+        .makes_volume = is_refracted && plan->has_volume_focus,
     };
 }
 

@@ -483,6 +483,53 @@ static void thin_solids_keep_their_sides_apart(void **state)
     assert_true(is_good);
 }
 
+/* --- shadows of targets ---------------------------------------------------------------------- */
+
+/* A prism throws all its photons past a small disk in its shadow.  That they were sent decides, not
+ * that they came: the disk is dark if it takes photons and the prism refracts them, else it sees
+ * the lamp through the glass. */
+static void shadows_of_targets_are_dark_without_a_photon(void **state)
+{
+    (void)state;
+#define SENT "photons { count 2000 }"
+    static const struct {
+        const char *settings, *light, *prism, *disk;
+        bool has_caustics;
+        double expected;
+    } cases[] = {
+        {SENT, "", "photons { target refraction on }", "", true, 0},
+        {SENT, "", "photons { target refraction on pass_through }", "", true, 0},
+        {SENT, "", "photons { target refraction on }", "photons { collect off }", true, 1},
+        {SENT, "photons { refraction off }", "photons { target refraction on }", "", false, 1},
+        {SENT, "", "photons { target refraction off }", "", false, 1},
+        {"", "", "photons { target refraction on }", "", false, 1},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 "#version 3.7; global_settings { assumed_gamma 1 %s }\n"
+                 "camera { location <0,1.5,-4> look_at 0 angle 1 right x up y }\n"
+                 "light_source { <0,20,0> rgb 1 %s }\n"
+                 "intersection { plane { y, 2.3 rotate z*20 } plane { -y, -2 }\n"
+                 "  box { <-.5,0,-.5>, <.5,4,.5> } pigment { rgbt 1 }\n"
+                 "  finish { ambient 0 diffuse 0 } interior { ior 1.9 } %s }\n"
+                 "disc { 0, y, 0.15 pigment { rgb 1 } finish { ambient 0 diffuse 1 } %s }\n",
+                 cases[i].settings, cases[i].light, cases[i].prism, cases[i].disk);
+        LitScene lit;
+        LitEye eye;
+        lit_make(&lit, text, 1, 1);
+        assert_null(lit.maps.caustic);
+        assert_true((lit.maps.books.caustic != NULL) == cases[i].has_caustics);
+        lit_eye_open(&eye, &lit, lit_within(0.1));
+        EyeSample seen = lit_look(&eye, 0.5, 0.5);
+        lit_eye_close(&eye);
+        lit_done(&lit);
+        if (!(fabs((double)seen.part[PART_DIRECT].g - cases[i].expected) < 1e-3))
+            fail_msg("case %zu: direct light %g, not %g", i, (double)seen.part[PART_DIRECT].g,
+                     cases[i].expected);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -494,6 +541,7 @@ int main(void)
         cmocka_unit_test(the_eye_adds_three_parts),
         cmocka_unit_test(paper_glows_on_both_sides),
         cmocka_unit_test(thin_solids_keep_their_sides_apart),
+        cmocka_unit_test(shadows_of_targets_are_dark_without_a_photon),
     };
     return cmocka_run_group_tests_name("light_paths", tests, NULL, NULL);
 }
