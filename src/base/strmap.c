@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-enum { STRMAP_FIRST = 64, WORD_MAX = 64 };
+enum { STRMAP_FIRST = 64 };
 
 void strmap_init(StrMap *map, Arena *arena)
 {
@@ -74,57 +74,4 @@ int strmap_set(StrMap *map, const char *key, size_t length, void *value)
     }
     entry->value = value;
     return 0;
-}
-
-static int min3(int a, int b, int c)
-{
-    int m = a < b ? a : b;
-    return m < c ? m : c;
-}
-
-/* Optimal string alignment distance, by rows. */
-int word_distance(const char *a, size_t a_length, const char *b, size_t b_length, int limit)
-{
-    int rows[3][WORD_MAX + 1];
-    size_t gap = a_length > b_length ? a_length - b_length : b_length - a_length;
-    if (a_length > WORD_MAX || b_length > WORD_MAX || gap > (size_t)limit)
-        return limit + 1;
-    int *before = rows[0], *above = rows[1], *row = rows[2];
-    for (size_t j = 0; j <= b_length; j++)
-        above[j] = (int)j;
-    for (size_t i = 1; i <= a_length; i++) {
-        row[0] = (int)i;
-        for (size_t j = 1; j <= b_length; j++) {
-            int replace = above[j - 1] + (a[i - 1] != b[j - 1]);
-            row[j] = min3(replace, above[j] + 1, row[j - 1] + 1);
-            bool is_swap = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
-            if (is_swap && before[j - 2] + 1 < row[j])
-                row[j] = before[j - 2] + 1;
-        }
-        int *spare = before;
-        before = above;
-        above = row;
-        row = spare;
-    }
-    return above[b_length] > limit ? limit + 1 : above[b_length];
-}
-
-const char *strmap_nearest(const StrMap *map, const char *key, size_t length)
-{
-    int limit = length < 4 ? 1 : length < 8 ? 2 : 3;
-    const char *nearest = NULL;
-    int best = limit + 1;
-    for (size_t i = 0; i < map->capacity; i++) {
-        const StrEntry *entry = &map->entries[i];
-        if (!entry->key || !entry->value)
-            continue;
-        int distance = word_distance(key, length, entry->key, entry->length, limit);
-        bool is_nearer =
-            distance < best || (distance == best && nearest && strcmp(entry->key, nearest) < 0);
-        if (is_nearer && distance <= limit) {
-            best = distance;
-            nearest = entry->key;
-        }
-    }
-    return nearest;
 }

@@ -29,12 +29,4 @@ void *strmap_find(const StrMap *map, const char *key, size_t length);
 /* Set the value of a key (NULL removes it); returns 0, or -1 when memory is out. */
 int strmap_set(StrMap *map, const char *key, size_t length, void *value);
 
-/* Return the stored key of the map nearest to `key` by edit distance, if it is near enough
- * to be a slip of the fingers, else NULL. */
-const char *strmap_nearest(const StrMap *map, const char *key, size_t length);
-
-/* Return the edit distance (insert, delete, replace, swap of neighbours) between two words,
- * or `limit` + 1 when it is over `limit`. */
-int word_distance(const char *a, size_t a_length, const char *b, size_t b_length, int limit);
-
 #endif

@@ -3,7 +3,7 @@
 #include "cli/cli.h"
 #include "cli/args_int.h"
 
-#include "base/strmap.h"
+#include "base/guess.h"
 #include "base/work.h"
 
 #include <ctype.h>
@@ -164,18 +164,13 @@ static Status set_option(Args *args, int id, const char *value)
 
 static Status unknown_option(const Args *args, const char *word, size_t length, int bit)
 {
-    const char *nearest = NULL;
-    int best = 4;
-    for (int i = 0; i < OPTION_COUNT; i++) {
-        int distance = word_distance(word, length, options[i].name, strlen(options[i].name), 3);
-        if ((options[i].commands & bit) && distance < best) {
-            best = distance;
-            nearest = options[i].name;
-        }
-    }
+    Guess guess = guess_begin(word, length);
+    for (int i = 0; i < OPTION_COUNT; i++)
+        if (options[i].commands & bit)
+            guess_try(&guess, options[i].name);
     return diag_fail(args->diag, ERR_USAGE, "pms %s has no option --%.*s%s%s%s", args->command,
-                     (int)length, word, nearest ? "; did you mean --" : "", nearest ? nearest : "",
-                     nearest ? "?" : "");
+                     (int)length, word, guess.best ? "; did you mean --" : "",
+                     guess.best ? guess.best : "", guess.best ? "?" : "");
 }
 
 /* A --name, --name=value or --name value at argv[*i]. */

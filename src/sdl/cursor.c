@@ -248,10 +248,13 @@ void release_hold(Parser *p)
 
 static void count_brace(Parser *p, const Token *token)
 {
-    if (token->kind == TOKEN_LBRACE && ++p->braces > BRACE_MAX)
-        parse_fail(p, token->span, "braces nest too deep (limit %d)", BRACE_MAX);
-    if (token->kind == TOKEN_RBRACE)
+    if (token->kind == TOKEN_LBRACE) {
+        if (p->braces == BRACE_MAX)
+            parse_fail(p, token->span, "braces nest too deep (limit %d)", BRACE_MAX);
+        p->brace_spans[p->braces++] = token->span;
+    } else if (token->kind == TOKEN_RBRACE && p->braces > 0) {
         p->braces--;
+    }
 }
 
 Token parse_next(Parser *p)

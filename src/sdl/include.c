@@ -209,6 +209,60 @@ void file_open(Parser *p, const char *path, Span call)
     frame_push_file(p, file, call);
 }
 
+/* --- what to say of POV-Ray's own files ----------------------------------------------------- */
+
+/* Return true, with the folder in *folder, if an include of this name lies in one of POV-Ray's. */
+static bool find_povray_folder(Parser *p, const char *name, const char **folder)
+{
+    static const char *const usual[] = {"/usr/share/povray-3.7/include",
+                                        "/usr/local/share/povray-3.7/include", NULL};
+    static const char *const endings[] = {"", ".inc"};
+    const char *const *folders = p->options->povray_folders;
+    for (folders = folders ? folders : usual; name[0] != '/' && *folders; folders++)
+        for (int i = 0; i < 2; i++) {
+            char path[PATH_MAX_BYTES];
+            int length = snprintf(path, sizeof path, "%s/%s%s", *folders, name, endings[i]);
+            *folder = *folders;
+            if (length < PATH_MAX_BYTES && file_exists(path))
+                return true;
+        }
+    return false;
+}
+
+/* Return true for the name of an include file that comes with POV-Ray. */
+static bool is_povray_include(const char *name)
+{
+    static const char *const names[] = {
+        "arrays",   "chars",     "colors",     "consts",   "debug",   "finish",     "functions",
+        "glass",    "golds",     "ior",        "logo",     "math",    "metals",     "rad_def",
+        "rand",     "screen",    "shapes",     "shapes2",  "shapes3", "skies",      "stage1",
+        "stars",    "stdcam",    "stdinc",     "stones",   "stones1", "stones2",    "strings",
+        "sunpos",   "textures",  "woods",      "woodmaps", "shapesq", "transforms", "meshmaker",
+        "stoneold", "glass_old", "shapes_old", "makegrass"};
+    size_t length = strlen(name);
+    if (ends_with(name, ".inc"))
+        length -= strlen(".inc");
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (strlen(names[i]) == length && memcmp(names[i], name, length) == 0)
+            return true;
+    return false;
+}
+
+static noreturn void fail_not_found(Parser *p, Span span, const char *name)
+{
+    static const char message[] =
+        "cannot find '%s' in the current folder, beside this file or on the library path%s%s%s%s";
+    const char *folder;
+    if (find_povray_folder(p, name, &folder))
+        parse_fail(p, span, message, name, "; POV-Ray's own is in '", folder,
+                   "', and found with -L ", folder);
+    if (is_povray_include(name))
+        parse_fail(p, span, message, name,
+                   "; it is one of POV-Ray's own, which the package povray-includes has", "", "",
+                   "");
+    parse_fail(p, span, message, name, "", "", "", "");
+}
+
 void include_directive(Parser *p)
 {
     static const char *const extensions[] = {".inc", ".INC", NULL};
@@ -216,9 +270,6 @@ void include_directive(Parser *p)
     const char *name = parse_path(p);
     const char *path = file_find(p, name, extensions);
     if (!path)
-        parse_fail(
-            p, span_join(begin, p->last),
-            "cannot find '%s' in the current folder, beside this file or on the library path",
-            name);
+        fail_not_found(p, span_join(begin, p->last), name);
     file_open(p, path, span_join(word, p->last));
 }

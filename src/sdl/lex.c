@@ -94,15 +94,19 @@ static void skip_block_comment(Lexer *lx)
 {
     size_t begin = lx->at;
     int depth = 0;
+    bool has_inner = false;
     while (lx->at < lx->size) {
         char c = byte_at(lx, 0), next = byte_at(lx, 1);
         bool is_open = c == '/' && next == '*', is_close = c == '*' && next == '/';
         lx->at += is_open || is_close ? 2 : 1;
         depth += is_open - is_close;
+        has_inner = has_inner || depth > 1;
         if (depth == 0)
             return;
     }
-    add_illegal(lx, begin, begin + 2, "this comment has no end");
+    add_illegal(lx, begin, begin + 2,
+                has_inner ? "this comment has no end; comments nest, so a `/*` in it wants its own"
+                          : "this comment has no end");
     lx->at = lx->size;
 }
 

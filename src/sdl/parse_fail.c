@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/parser_int.h"
 
+#include "base/guess.h"
+
 #include <string.h>
 
 /* Say how the cursor came to where it is, innermost first. */
@@ -21,6 +23,16 @@ static void backtrace(Parser *p)
     }
 }
 
+/* At the end of the file: say where what should have been closed was opened. */
+static void note_open_brace(Parser *p, Span span)
+{
+    if (p->frame_count != 1 || p->braces == 0)
+        return;
+    const Token *end = frame_top(p)->end;
+    if (span.source == end->span.source && span.begin == end->span.begin)
+        diag_note(p->diag, p->brace_spans[p->braces - 1], "this `{` has no `}`");
+}
+
 static noreturn void leave(Parser *p, Status status)
 {
     p->status = status;
@@ -33,6 +45,7 @@ noreturn void parse_fail(Parser *p, Span span, const char *format, ...)
     va_start(args, format);
     diag_error_v(p->diag, span, format, args);
     va_end(args);
+    note_open_brace(p, span);
     backtrace(p);
     leave(p, ERR_SYNTAX);
 }
@@ -61,30 +74,16 @@ void parse_warn(Parser *p, WarnKind kind, Span span, const char *format, ...)
     va_end(args);
 }
 
-static const char *nearer(const char *word, size_t length, const char *best, int *best_distance,
-                          const Name *candidate)
-{
-    int limit = length < 4 ? 1 : length < 8 ? 2 : 3;
-    int distance = word_distance(word, length, candidate->text, candidate->length, limit);
-    bool is_nearer = distance < *best_distance ||
-                     (distance == *best_distance && best && strcmp(candidate->text, best) < 0);
-    if (distance > limit || !is_nearer)
-        return best;
-    *best_distance = distance;
-    return candidate->text;
-}
-
 const char *word_nearest(const Parser *p, const char *word, size_t length)
 {
-    const char *best = NULL;
-    int best_distance = (int)length;
+    Guess guess = guess_begin(word, length);
     for (size_t i = 0; i < p->names.map.capacity; i++) {
         const Name *name = p->names.map.entries[i].value;
         if (name &&
             (name->kind == TOKEN_IDENTIFIER ? name->symbol != NULL : keyword_has(name->kind)))
-            best = nearer(word, length, best, &best_distance, name);
+            guess_try(&guess, name->text);
     }
-    return best;
+    return guess.best;
 }
 
 noreturn void parse_fail_unknown(Parser *p, const Token *token, const char *what)

@@ -128,6 +128,7 @@ struct Parser {
     Span last;             /* token taken last */
     TokenKind last_kind;
     int nest, braces;
+    Span brace_spans[BRACE_MAX]; /* of the open ones, innermost last */
     long tokens_left, tokens_max;
     size_t bytes_max; /* of the scene arena */
 

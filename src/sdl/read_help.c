@@ -2,10 +2,17 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/read_int.h"
 
+#include "base/guess.h"
+
+#include <assert.h>
 #include <float.h>
+#include <stdio.h>
 #include <string.h>
 
-enum { LIST_MAX = 1000 }; /* nodes of a list that is copied to grow */
+enum {
+    LIST_MAX = 1000,     /* nodes of a list that is copied to grow */
+    WORDS_TEXT_MAX = 256 /* bytes of the words to choose from, in a message */
+};
 
 const char *read_word(Parser *p, const Token *token)
 {
@@ -22,6 +29,39 @@ bool read_is_word(const Token *token, const char *word)
     size_t length = strlen(word);
     return token->span.source && token->span.end - token->span.begin == length &&
            memcmp(token->span.source->text + token->span.begin, word, length) == 0;
+}
+
+/* Fail on a token that is none of `words`. */
+static noreturn void fail_choice(Parser *p, const Token *found, const char *what,
+                                 const char *const words[], int count)
+{
+    char list[WORDS_TEXT_MAX] = "";
+    size_t length = 0;
+    const char *spelled = read_word(p, found);
+    Guess guess = guess_begin(spelled, strlen(spelled));
+    for (int i = words[0][0] ? 0 : 1; i < count; i++) {
+        const char *after = i + 1 == count ? "" : i + 2 == count ? " or " : ", ";
+        length += (size_t)snprintf(list + length, sizeof list - length, "%s%s", words[i], after);
+        assert(length < sizeof list);
+        guess_try(&guess, words[i]);
+    }
+    bool is_name = found->kind == TOKEN_IDENTIFIER, has_guess = guess.best != NULL;
+    const char *quote = is_name ? "`" : "";
+    parse_fail(p, found->span, "%s wants %s, found %s%s%s%s%s%s", what, list, quote,
+               is_name ? spelled : token_kind_text(found->kind), quote,
+               has_guess ? "; did you mean `" : "", has_guess ? guess.best : "",
+               has_guess ? "`?" : "");
+}
+
+int read_choice(Parser *p, const char *what, const char *const words[], int count)
+{
+    const Token *found = parse_peek(p);
+    for (int i = 0; i < count; i++)
+        if (words[i][0] && read_is_word(found, words[i])) {
+            parse_next(p);
+            return i;
+        }
+    fail_choice(p, found, what, words, count);
 }
 
 Token read_open(Parser *p)

@@ -20,6 +20,10 @@ const char *read_word(Parser *p, const Token *token);
 /* Return true if a token is this word; words of pms{} are not reserved. */
 bool read_is_word(const Token *token, const char *word);
 
+/* Take one of `words` ("" is none) and return its number; else fail with the list of them and the
+ * nearest one.  `what` names what wants it. */
+int read_choice(Parser *p, const char *what, const char *const words[], int count);
+
 /* Read a float that must be finite; `what` names it in messages; *span gets its place. */
 double read_finite(Parser *p, const char *what, Span *span_or_null);
 

@@ -43,17 +43,17 @@ static void read_sellmeier(Parser *p, Interior *interior, const Token *word)
 
 void read_pms_interior(Parser *p, Interior *interior)
 {
+    enum { PRIORITY, CAUCHY, SELLMEIER, COUNT };
+    static const char *const words[COUNT] = {"priority", "cauchy", "sellmeier"};
     read_open(p);
     while (!read_close(p)) {
-        Token word = parse_next(p);
-        if (read_is_word(&word, "priority"))
+        Token word = *parse_peek(p);
+        int choice = read_choice(p, "pms { } of an interior", words, COUNT);
+        if (choice == PRIORITY)
             interior->priority = (int)parse_int(p, "priority", -PRIORITY_MAX, PRIORITY_MAX);
-        else if (read_is_word(&word, "cauchy"))
+        else if (choice == CAUCHY)
             read_cauchy(p, interior, &word);
-        else if (read_is_word(&word, "sellmeier"))
-            read_sellmeier(p, interior, &word);
         else
-            parse_fail(p, word.span,
-                       "pms{} of an interior has priority, cauchy and sellmeier; this is none");
+            read_sellmeier(p, interior, &word);
     }
 }

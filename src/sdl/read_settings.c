@@ -123,59 +123,54 @@ void read_global_photons(Parser *p, PhotonSettings *photons)
 
 /* --- pms: what the common language has no word for ----------------------------------------- */
 
-/* Take one of a list of words and return its number. */
-static int read_choice(Parser *p, const char *what, const char *const words[], int count,
-                       const char *list)
-{
-    Token token = parse_next(p);
-    for (int i = 0; i < count; i++)
-        if (read_is_word(&token, words[i]))
-            return i;
-    parse_fail(p, token.span, "%s wants one of %s", what, list);
-}
-
 static void read_kernel(Parser *p, PmsSettings *pms)
 {
     static const char *const words[KERNEL_COUNT] = {"flat", "cone", "epanechnikov", "gaussian",
                                                     "gaussian_jensen"};
-    pms->kernel = (GatherKernel)read_choice(p, "kernel", words, KERNEL_COUNT,
-                                            "flat, cone, epanechnikov, gaussian, gaussian_jensen");
+    pms->kernel = (GatherKernel)read_choice(p, "kernel", words, KERNEL_COUNT);
 }
 
 static void read_gather_shape(Parser *p, PmsSettings *pms)
 {
     static const char *const words[2] = {"disk", "sphere"};
-    pms->gather_shape = (GatherShape)read_choice(p, "gather", words, 2, "disk, sphere");
+    pms->gather_shape = (GatherShape)read_choice(p, "gather", words, 2);
 }
 
 static void read_gi_method(Parser *p, PmsSettings *pms)
 {
     static const char *const words[INDIRECT_COUNT] = {"", "cache", "gather", "map"};
-    pms->method =
-        (IndirectMethod)read_choice(p, "gi_method", words, INDIRECT_COUNT, "cache, gather, map");
+    pms->method = (IndirectMethod)read_choice(p, "gi_method", words, INDIRECT_COUNT);
+}
+
+static void read_pms_setting(Parser *p, PmsSettings *pms)
+{
+    enum { GI, GI_METHOD, GLOBAL_PHOTONS, KERNEL, GATHER, COUNT };
+    static const char *const words[COUNT] = {"gi", "gi_method", "global_photons", "kernel",
+                                             "gather"};
+    switch (read_choice(p, "pms { } of global_settings", words, COUNT)) {
+    case GI:
+        pms->has_indirect = parse_flag(p);
+        break;
+    case GI_METHOD:
+        read_gi_method(p, pms);
+        break;
+    case GLOBAL_PHOTONS:
+        pms->global_count = parse_int(p, "global_photons", 1, 2000000000);
+        break;
+    case KERNEL:
+        read_kernel(p, pms);
+        break;
+    default:
+        read_gather_shape(p, pms);
+    }
 }
 
 void read_pms_settings(Parser *p, PmsSettings *pms)
 {
     Token head = read_open(p);
     pms->span = head.span;
-    while (!read_close(p)) {
-        Token word = parse_next(p);
-        if (read_is_word(&word, "gi"))
-            pms->has_indirect = parse_flag(p);
-        else if (read_is_word(&word, "gi_method"))
-            read_gi_method(p, pms);
-        else if (read_is_word(&word, "global_photons"))
-            pms->global_count = parse_int(p, "global_photons", 1, 2000000000);
-        else if (read_is_word(&word, "kernel"))
-            read_kernel(p, pms);
-        else if (read_is_word(&word, "gather"))
-            read_gather_shape(p, pms);
-        else
-            parse_fail(p, word.span,
-                       "pms settings are gi, gi_method, global_photons, kernel and gather; this is "
-                       "none");
-    }
+    while (!read_close(p))
+        read_pms_setting(p, pms);
 }
 
 /* --- global_settings ----------------------------------------------------------------------- */

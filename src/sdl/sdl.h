@@ -14,6 +14,9 @@ typedef struct SdlOptions {
     const char *const *library_paths; /* searched in order for includes, after the current folder
                                          and the folder of the including file */
     int library_path_count;
+    const char *const *povray_folders; /* where POV-Ray's own include files may lie, up to a NULL:
+                                          never read, but told of when one of them is missing;
+                                          NULL: the usual places */
     const SdlDeclare *declares;
     int declare_count;
     int width, height;      /* for image_width and image_height */

@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "base/arena.h"
 #include "base/diag.h"
+#include "base/guess.h"
 #include "base/mem.h"
 #include "base/rng.h"
 #include "base/stats.h"
@@ -95,11 +96,10 @@ static void test_diag_points(void **state)
     diag_init(&diag, keep_message, said);
     diag_error(&diag, (Span){&source, at, at + 9}, "radius wants a float, got a vector of %d", 2);
     diag_note(&diag, (Span){&source, 0, 6}, "included from here");
-    assert_string_equal(said,
-                        "scenes/a.pov:2:20: error: radius wants a float, got a vector of 2\n"
-                        "    2 |     sphere { <0,0,0>, R + <1,2> }\n"
-                        "      |                       ^~~~~~~~~\n"
-                        "scenes/a.pov:1:1: note: included from here\n");
+    assert_string_equal(said, "scenes/a.pov:2:20: error: radius wants a float, got a vector of 2\n"
+                              "    2 |     sphere { <0,0,0>, R + <1,2> }\n"
+                              "      |                       ^~~~~~~~~\n"
+                              "scenes/a.pov:1:1: note: included from here\n");
     assert_int_equal(diag.errors, 1);
     diag_done(&diag);
 }
@@ -154,14 +154,29 @@ static void test_words(void **state)
     assert_int_equal(word_distance("spere", 5, "sphere", 6, 3), 1);
     assert_int_equal(word_distance("", 0, "abc", 3, 3), 3);
     assert_int_equal(word_distance("union", 5, "torus", 5, 3), 4);
-    Arena *arena = arena_new();
-    StrMap map;
-    strmap_init(&map, arena);
-    strmap_set(&map, "pigment", 7, &map);
-    strmap_set(&map, "finish", 6, &map);
-    assert_string_equal(strmap_nearest(&map, "pigmnet", 7), "pigment");
-    assert_null(strmap_nearest(&map, "camera", 6));
-    arena_free(arena);
+}
+
+/* What is offered in any order gives the same; a word that shares nothing is no guess. */
+static void test_guess(void **state)
+{
+    (void)state;
+    static const char *const words[] = {"pigment", "finish", "cone", "cones", "cane", "x"};
+    static const struct {
+        const char *word, *best;
+    } cases[] = {{"pigmnet", "pigment"}, {"camera", NULL}, {"cine", "cane"}, {"cone", "cone"},
+                 {"finsh", "finish"},    {"y", NULL},      {"", NULL}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Guess up = guess_begin(cases[i].word, strlen(cases[i].word)), down = up;
+        for (int k = 0; k < 6; k++) {
+            guess_try(&up, words[k]);
+            guess_try(&down, words[5 - k]);
+        }
+        assert_ptr_equal(up.best, down.best);
+        if (cases[i].best)
+            assert_string_equal(up.best, cases[i].best);
+        else
+            assert_null(up.best);
+    }
 }
 
 /* Uniform numbers: mean 1/2, and no correlation of neighbours, within 4 standard errors. */
@@ -238,11 +253,17 @@ static void test_status_and_stats(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_mem_fails_on_order), cmocka_unit_test(test_mem_grow),
-        cmocka_unit_test(test_arena),              cmocka_unit_test(test_diag_points),
-        cmocka_unit_test(test_diag_edges),         cmocka_unit_test(test_strmap),
-        cmocka_unit_test(test_words),              cmocka_unit_test(test_rng),
-        cmocka_unit_test(test_work),               cmocka_unit_test(test_status_and_stats),
+        cmocka_unit_test(test_mem_fails_on_order),
+        cmocka_unit_test(test_mem_grow),
+        cmocka_unit_test(test_arena),
+        cmocka_unit_test(test_diag_points),
+        cmocka_unit_test(test_diag_edges),
+        cmocka_unit_test(test_strmap),
+        cmocka_unit_test(test_words),
+        cmocka_unit_test(test_guess),
+        cmocka_unit_test(test_rng),
+        cmocka_unit_test(test_work),
+        cmocka_unit_test(test_status_and_stats),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

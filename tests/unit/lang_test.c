@@ -3,8 +3,8 @@
  * What a case expects stands in its comments, one on a line:
  *     // expect error: LINE:COLUMN: TEXT     the scene is refused there, with TEXT in the message
  *     // expect error: TEXT                  the same, anywhere
- *     // expect warning: TEXT                a warning has TEXT in it
- *     // expect note: TEXT                   a note (the way to the error) has TEXT in it
+ *     // expect warning: TEXT                a warning has TEXT in it, or one at LINE:COLUMN: TEXT
+ *     // expect note: TEXT                   a note (the way to the error) has TEXT in it, the same
  *     // expect debug: TEXT                  the debug stream has TEXT in it
  * A case without `expect error` must load, with no more warnings than it expects, except
  * that a scene may be empty.
@@ -71,13 +71,13 @@ typedef struct Result {
     int warnings; /* expected */
 } Result;
 
-/* Cut LINE:COLUMN: off `text`, if it is there, into the marker of an error at that place. */
-static char *take_place(char *text, char marker[LINE_LENGTH])
+/* Cut LINE:COLUMN: off `text`, if it is there, into the marker of a message at that place. */
+static char *take_place(const char *what, char *text, char marker[LINE_LENGTH])
 {
     int line, column, length = 0;
     if (sscanf(text, "%d:%d: %n", &line, &column, &length) != 2 || !length)
         return text;
-    snprintf(marker, LINE_LENGTH, ":%d:%d: error: ", line, column);
+    snprintf(marker, LINE_LENGTH, ":%d:%d: %s: ", line, column, what);
     return text + length;
 }
 
@@ -86,12 +86,11 @@ static void check_line(const char *what, char *text, const char *heard, Result *
 {
     char marker[LINE_LENGTH];
     snprintf(marker, sizeof marker, " %s: ", what);
-    if (strcmp(what, "error") == 0) {
-        text = take_place(text, marker);
-        result->is_refused = true;
-    } else if (strcmp(what, "debug") == 0) {
+    if (strcmp(what, "debug") == 0)
         marker[0] = 0;
-    }
+    else
+        text = take_place(what, text, marker);
+    result->is_refused = result->is_refused || strcmp(what, "error") == 0;
     result->warnings += strcmp(what, "warning") == 0;
     if (find_line(heard, marker, text))
         return;

@@ -11,6 +11,8 @@
 
 #include <cmocka.h>
 
+#include "folder.h"
+
 enum { HEARD_MAX = 8192 };
 
 typedef struct Loaded {
@@ -137,12 +139,57 @@ static void test_look(void **state)
                                       "a.pms:5:9: note: in macro 'Ball' called here\n");
 }
 
+/* A missing file that is POV-Ray's: the message says where it is, or what would bring it; it is
+ * never read. */
+static void test_povray_include(void **state)
+{
+    (void)state;
+    const char *none[] = {"tests/no_such_folder", NULL};
+    const char *some[] = {"tests/no_such_folder", folder, NULL};
+    static const struct {
+        const char *name;
+        bool is_there;
+        const char *said; /* behind the usual words */
+    } rows[] = {
+        {"colors.inc", true, "library path; POV-Ray's own is in '"},
+        {"colors", true, "library path; POV-Ray's own is in '"},
+        {"colors.inc", false,
+         "library path; it is one of POV-Ray's own, which the package "
+         "povray-includes has\n"},
+        {"textures", false, "package povray-includes has\n"},
+        {"my_colors.inc", true, "library path\n"},
+    };
+    static const char text[] = "#debug \"colours are here\"";
+    spill(in_folder("colors.inc"), text, strlen(text));
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        SdlOptions options = {.threads = 1, .povray_folders = rows[i].is_there ? some : none};
+        char scene[64];
+        Loaded loaded;
+        snprintf(scene, sizeof scene, "#include \"%s\"", rows[i].name);
+        load(&loaded, "a.pms", scene, &options);
+        assert_int_equal(loaded.status, ERR_SYNTAX);
+        assert_heard(&loaded, rows[i].said);
+        assert_null(strstr(loaded.heard, "colours are here"));
+    }
+    char wanted[300];
+    Loaded loaded;
+    load(&loaded, "a.pms", "#include \"colors.inc\"",
+         &(SdlOptions){.threads = 1, .povray_folders = some});
+    snprintf(wanted, sizeof wanted, "is in '%s', and found with -L %s\n", folder, folder);
+    assert_heard(&loaded, wanted);
+    const char *library = folder;
+    load(&loaded, "a.pms", "#include \"colors.inc\"",
+         &(SdlOptions){.threads = 1, .library_paths = &library, .library_path_count = 1});
+    assert_int_equal(loaded.status, OK);
+    assert_heard(&loaded, "colours are here");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_options), cmocka_unit_test(test_reserved_declare),
         cmocka_unit_test(test_gamma),   cmocka_unit_test(test_status),
-        cmocka_unit_test(test_look),
+        cmocka_unit_test(test_look),    cmocka_unit_test(test_povray_include),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
