@@ -3,6 +3,7 @@
 #include "cli/cli.h"
 #include "cli/args_int.h"
 
+#include "base/file.h"
 #include "base/guess.h"
 #include "base/work.h"
 
@@ -53,7 +54,15 @@ static bool is_optional(const Option *option)
     return option->argument && option->argument[0] == '[';
 }
 
-static void print_option(const Option *option)
+/* Return the help of an option, which for some commands is another. */
+static const char *option_text(const Option *option, int command)
+{
+    if (option == &options[OPT_OUTPUT] && command == CMD_VALIDATE)
+        return "write both pictures and their difference, side by side, to FILE, .exr or .png";
+    return option->text;
+}
+
+static void print_option(const Option *option, int command)
 {
     char left[64];
     const char *argument = option->argument ? option->argument : "";
@@ -63,7 +72,7 @@ static void print_option(const Option *option)
              : option->argument  ? "="
                                  : "",
              is_optional(option) ? argument + 1 : argument);
-    printf("  %-*s %s\n", HELP_COLUMN, left, option->text);
+    printf("  %-*s %s\n", HELP_COLUMN, left, option_text(option, command));
 }
 
 static void print_help(const CommandInfo *info)
@@ -82,7 +91,7 @@ static void print_help(const CommandInfo *info)
     printf("options:\n");
     for (int i = 0; i < OPTION_COUNT; i++)
         if (options[i].commands & info->bit)
-            print_option(&options[i]);
+            print_option(&options[i], info->bit);
     if (info->bit & CMD_SCENE)
         printf("\nPOV-Ray's switches work too: +Ifile +Ofile +Wn +Hn +A[0.n] -A +AMn +Rn +J[n] -J "
                "+Ldir\n"
@@ -162,76 +171,96 @@ static Status set_option(Args *args, int id, const char *value)
     return OK;
 }
 
-static Status unknown_option(const Args *args, const char *word, size_t length, int bit)
+/* Set an option that has an argument: `joined` to it, or, if that is NULL, the next word.  `form`
+ * is the option as it was written. */
+static Status take_value(Args *args, int id, const char *form, const char *joined, int *i)
 {
-    Guess guess = guess_begin(word, length);
+    const char *argument = options[id].argument;
+    const char *value = joined ? joined : *i + 1 < args->argc ? args->argv[++*i] : "";
+    int brackets = is_optional(&options[id]);
+    if (!*value)
+        return diag_fail(args->diag, ERR_USAGE, "%s wants %.*s after it (%s)", form,
+                         (int)strlen(argument) - 2 * brackets, argument + brackets,
+                         option_text(&options[id], 0));
+    return set_option(args, id, value);
+}
+
+static bool is_option(const Option *option, int bit, const char *name, size_t length)
+{
+    return (option->commands & bit) && strlen(option->name) == length &&
+           memcmp(option->name, name, length) == 0;
+}
+
+static Status unknown_option(const Args *args, const char *word, const char *name, size_t length,
+                             int bit)
+{
+    Guess guess = guess_begin(name, length);
     for (int i = 0; i < OPTION_COUNT; i++)
         if (options[i].commands & bit)
             guess_try(&guess, options[i].name);
-    return diag_fail(args->diag, ERR_USAGE, "pms %s has no option --%.*s%s%s%s", args->command,
-                     (int)length, word, guess.best ? "; did you mean --" : "",
+    return diag_fail(args->diag, ERR_USAGE, "pms %s has no option %.*s%s%s%s", args->command,
+                     (int)(name + length - word), word,
+                     guess.best ? "; did you mean --" : " (--help lists them)",
                      guess.best ? guess.best : "", guess.best ? "?" : "");
 }
 
 /* A --name, --name=value or --name value at argv[*i]. */
-static Status parse_long(Args *args, int bit, int argc, char **argv, int *i)
+static Status parse_long(Args *args, int bit, int *i)
 {
-    const char *word = argv[*i] + 2;
-    const char *equals = strchr(word, '=');
-    size_t length = equals ? (size_t)(equals - word) : strlen(word);
+    const char *word = args->argv[*i], *name = word + 2;
+    const char *equals = strchr(name, '=');
+    size_t length = equals ? (size_t)(equals - name) : strlen(name);
     for (int id = 0; id < OPTION_COUNT; id++) {
         const Option *option = &options[id];
-        if (!(option->commands & bit) || strlen(option->name) != length ||
-            memcmp(option->name, word, length) != 0)
+        if (!is_option(option, bit, name, length))
             continue;
         if (!option->argument && equals)
             return diag_fail(args->diag, ERR_USAGE, "--%s takes no value", option->name);
-        if (!option->argument || (is_optional(option) && !equals))
-            return set_option(args, id, "");
-        if (!equals && *i + 1 >= argc)
-            return diag_fail(args->diag, ERR_USAGE, "--%s wants %s after it", option->name,
-                             option->argument);
-        return set_option(args, id, equals ? equals + 1 : argv[++*i]);
+        if (!is_optional(option) && option->argument)
+            return take_value(args, id, word, equals ? equals + 1 : NULL, i);
+        if (equals)
+            return take_value(args, id, word, equals + 1, i);
+        args->parted = is_optional(option) ? *i : args->parted;
+        return set_option(args, id, "");
     }
-    return unknown_option(args, word, length, bit);
+    return unknown_option(args, word, name, length, bit);
 }
 
-/* A -x, -xvalue or -x value at argv[*i]. */
-static Status parse_short(Args *args, int bit, int argc, char **argv, int *i)
+/* A -x, -xvalue, -x=value or -x value at argv[*i]. */
+static Status parse_short(Args *args, int bit, int *i)
 {
-    const char *word = argv[*i];
-    for (int id = 0; id < OPTION_COUNT; id++) {
+    const char *word = args->argv[*i], *name = word + 1;
+    size_t length = strcspn(name, "=");
+    bool is_long_name = false; /* -width is no -w with the value "idth" */
+    for (int id = 0; id < OPTION_COUNT; id++)
+        is_long_name = is_long_name || (length > 1 && is_option(&options[id], bit, name, length));
+    for (int id = 0; id < OPTION_COUNT && !is_long_name; id++) {
         const Option *option = &options[id];
-        if (!(option->commands & bit) || option->letter != word[1])
+        if (!(option->commands & bit) || option->letter != name[0])
             continue;
-        if (!option->argument && word[2])
-            break;
-        if (!option->argument)
+        const char form[] = {'-', option->letter, 0};
+        const char *joined = name[1] ? name + 1 + (name[1] == '=') : NULL;
+        if (option->argument)
+            return take_value(args, id, form, joined, i);
+        if (!joined)
             return set_option(args, id, "");
-        if (word[2])
-            return set_option(args, id, word + 2);
-        if (*i + 1 >= argc)
-            return diag_fail(args->diag, ERR_USAGE, "-%c wants %s after it", option->letter,
-                             option->argument);
-        return set_option(args, id, argv[++*i]);
     }
-    return diag_fail(args->diag, ERR_USAGE, "pms %s has no option %s (--help lists them)",
-                     args->command, word);
+    return unknown_option(args, word, name, length, bit);
 }
 
-static Status parse_word(Args *args, int bit, int argc, char **argv, int *i)
+static Status parse_word(Args *args, int bit, int *i)
 {
-    const char *word = argv[*i];
+    const char *word = args->argv[*i];
     bool reads_scene = (bit & CMD_SCENE) != 0;
     bool is_taken = false;
     if (word[0] == '-' && word[1] == '-')
-        return parse_long(args, bit, argc, argv, i);
+        return parse_long(args, bit, i);
     if (reads_scene)
         TRY(pov_switch(args, word, &is_taken));
     if (is_taken)
         return OK;
     if (word[0] == '-' && word[1])
-        return parse_short(args, bit, argc, argv, i);
+        return parse_short(args, bit, i);
     return args_add_operand(args, word);
 }
 
@@ -250,7 +279,7 @@ Status args_parse(Args *args, const char *command, int argc, char **argv, bool *
         else if (strcmp(argv[i], "--") == 0)
             has_ended = true;
         else
-            TRY(parse_word(args, info->bit, argc, argv, &i));
+            TRY(parse_word(args, info->bit, &i));
     }
     if (args_has(args, OPT_HELP)) {
         print_help(info);
@@ -262,14 +291,24 @@ Status args_parse(Args *args, const char *command, int argc, char **argv, bool *
     return OK;
 }
 
+static Status too_many_operands(const Args *args, const char *what)
+{
+    const char *parted = args->parted ? args->argv[args->parted + 1] : NULL;
+    if (parted && *parted != '-' && !file_exists(parted))
+        return diag_fail(args->diag, ERR_USAGE,
+                         "%s wants its value joined to it by =; did you mean %s=%s?",
+                         args->argv[args->parted], args->argv[args->parted], parted);
+    return diag_fail(args->diag, ERR_USAGE, "pms %s wants %s, got %d: '%s', '%s'%s", args->command,
+                     what, args->operand_count, args->operands[0], args->operands[1],
+                     args->operand_count > 2 ? ", ..." : "");
+}
+
 Status args_want_operands(const Args *args, int count, const char *what)
 {
     if (args->operand_count == count)
         return OK;
     if (args->operand_count > count)
-        return diag_fail(args->diag, ERR_USAGE, "pms %s wants %s, got %d: '%s', '%s'%s",
-                         args->command, what, args->operand_count, args->operands[0],
-                         args->operands[1], args->operand_count > 2 ? ", ..." : "");
+        return too_many_operands(args, what);
     return diag_fail(args->diag, ERR_USAGE, "pms %s wants %s, got %d (--help tells more)",
                      args->command, what, args->operand_count);
 }
@@ -291,6 +330,7 @@ Status args_number(const Args *args, OptionId id, double lowest, double highest,
 
 Status args_int(const Args *args, OptionId id, long lowest, long highest, long fallback, long *out)
 {
+    const char letter[] = {'-', options[id].letter, ',', ' ', 0};
     const char *text = args->value[id];
     *out = fallback;
     if (!text)
@@ -300,8 +340,8 @@ Status args_int(const Args *args, OptionId id, long lowest, long highest, long f
     *out = strtol(text, &end, 10);
     if (end == text || *end || errno || *out < lowest || *out > highest)
         return diag_fail(args->diag, ERR_USAGE,
-                         "--%s wants a whole number from %ld to %ld, got '%s'", options[id].name,
-                         lowest, highest, text);
+                         "%s--%s wants a whole number from %ld to %ld, got '%s'",
+                         letter[1] ? letter : "", options[id].name, lowest, highest, text);
     return OK;
 }
 

@@ -47,7 +47,8 @@ typedef struct Args {
     int aa_method, aa_depth;        /* +AM, +R; 0: not given */
     double aa_threshold, aa_jitter; /* +A0.n, +J; negative: not given */
     bool is_jitter_off;             /* -J */
-    int argc;                       /* as given, for the metadata */
+    int parted; /* index in argv of the last option whose value may be joined to it but is not; 0 */
+    int argc;   /* as given, also for the metadata */
     char **argv;
 } Args;
 

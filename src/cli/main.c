@@ -1,6 +1,8 @@
 /* The program: find the command and run it.  SPDX-License-Identifier: Apache-2.0 */
 #include "cli/cli.h"
 
+#include "base/file.h"
+#include "base/guess.h"
 #include "base/work.h"
 
 #include <signal.h>
@@ -72,6 +74,26 @@ static int run(const Command *command, int argc, char **argv)
     return end(status_exit_code(status));
 }
 
+/* Return the command that `word` may be a misspelling of, or NULL; what looks like an option or the
+ * name of a scene is none. */
+static const char *command_nearest(const char *word)
+{
+    Guess guess = guess_begin(word, strlen(word));
+    for (int i = 0; i < COMMAND_COUNT; i++)
+        guess_try(&guess, commands[i].name);
+    return strpbrk(word, "./+-=") || file_exists(word) ? NULL : guess.best;
+}
+
+static int refuse(const char *word, const char *nearest)
+{
+    Diag diag;
+    diag_init(&diag, NULL, NULL);
+    Status status =
+        diag_fail(&diag, ERR_USAGE, "pms has no command '%s'; did you mean %s?", word, nearest);
+    diag_done(&diag);
+    return status_exit_code(status);
+}
+
 int main(int argc, char **argv)
 {
     catch_signals();
@@ -81,5 +103,6 @@ int main(int argc, char **argv)
         argv[1] = argv[0];
         return run(&commands[i], argc - 1, argv + 1);
     }
-    return run(&commands[0], argc, argv); /* render */
+    const char *nearest = argc > 1 ? command_nearest(argv[1]) : NULL;
+    return nearest ? refuse(argv[1], nearest) : run(&commands[0], argc, argv); /* render */
 }

@@ -6,15 +6,17 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Lines a second. */
-#define PROGRESS_INTERVAL 0.1
+/* Seconds from one line to the next: on a terminal, which shows the last one only, and for
+ * programs; and in a log, which keeps them all. */
+#define LIVE_INTERVAL 0.1
+#define LOG_INTERVAL 10
 
 Status progress_init(Progress *progress, const Args *args)
 {
     const char *kind = args->value[OPT_PROGRESS];
-    *progress = (Progress){.kind = PROGRESS_NONE};
+    *progress = (Progress){.kind = PROGRESS_NONE, .is_terminal = isatty(STDERR_FILENO)};
     if (!kind || strcmp(kind, "auto") == 0)
-        progress->kind = isatty(STDERR_FILENO) ? PROGRESS_LINE : PROGRESS_NONE;
+        progress->kind = progress->is_terminal ? PROGRESS_LINE : PROGRESS_END;
     else if (strcmp(kind, "line") == 0)
         progress->kind = PROGRESS_LINE;
     else if (strcmp(kind, "json") == 0)
@@ -25,7 +27,8 @@ Status progress_init(Progress *progress, const Args *args)
     return OK;
 }
 
-static void show_line(const RenderProgress *now, int percent)
+/* Write over the line before on a terminal, one line more elsewhere. */
+static void show_line(const Progress *progress, const RenderProgress *now, int percent)
 {
     char left[32] = "";
     if (now->seconds_left >= 3600)
@@ -39,7 +42,8 @@ static void show_line(const RenderProgress *now, int percent)
         snprintf(pass, sizeof pass, "pass %" PRIu64 " of %" PRIu64 ", ", now->pass, now->passes);
     else if (now->pass)
         snprintf(pass, sizeof pass, "pass %" PRIu64 ", ", now->pass);
-    fprintf(stderr, "\r\033[K%s%s %d %%%s", pass, now->phase, percent, left);
+    fprintf(stderr, "%s%s%s %d %%%s%s", progress->is_terminal ? "\r\033[K" : "", pass, now->phase,
+            percent, left, progress->is_terminal ? "" : "\n");
     fflush(stderr);
 }
 
@@ -59,10 +63,12 @@ void progress_show(void *ctx, const RenderProgress *now)
 {
     Progress *progress = ctx;
     double clock = clock_wall();
+    bool is_log = progress->kind == PROGRESS_LINE && !progress->is_terminal;
+    double interval = is_log ? LOG_INTERVAL : LIVE_INTERVAL;
     /* Passes may be many a second. */
     bool is_new_phase = now->phase != progress->last_phase && now->pass <= 1;
-    if (progress->kind == PROGRESS_NONE ||
-        (!is_new_phase && clock - progress->last_shown < PROGRESS_INTERVAL))
+    if (progress->kind == PROGRESS_NONE || progress->kind == PROGRESS_END ||
+        (!is_new_phase && clock - progress->last_shown < interval))
         return;
     progress->last_shown = clock;
     progress->last_phase = now->phase;
@@ -72,8 +78,8 @@ void progress_show(void *ctx, const RenderProgress *now)
     if (progress->kind == PROGRESS_JSON) {
         show_json(now, percent);
     } else {
-        progress->has_line = true;
-        show_line(now, percent);
+        progress->has_line = progress->is_terminal;
+        show_line(progress, now, percent);
     }
 }
 
@@ -82,4 +88,36 @@ void progress_done(Progress *progress)
     if (progress->has_line)
         fputs("\r\033[K", stderr);
     progress->has_line = false;
+}
+
+static void say_passes_json(const Args *args, const RenderResult *result, double seconds)
+{
+    fprintf(stderr, "{\"done\": true, \"passes\": %" PRIu64 ", \"passes_of_this_run\": %" PRIu64,
+            result->passes, result->new_passes);
+    fprintf(stderr, ", \"seconds\": ");
+    json_number(stderr, seconds);
+    fprintf(stderr, ", \"files\": [");
+    for (int i = 0; i < args->output_count; i++) {
+        fputs(i ? ", " : "", stderr);
+        json_string(stderr, args->outputs[i]);
+    }
+    fprintf(stderr, "]}\n");
+}
+
+void progress_say_passes(const Progress *progress, const Args *args, const RenderResult *result,
+                         double seconds)
+{
+    if (progress->kind == PROGRESS_NONE)
+        return;
+    if (progress->kind == PROGRESS_JSON) {
+        say_passes_json(args, result, seconds);
+        return;
+    }
+    fprintf(stderr, "pms: %" PRIu64 " pass%s", result->passes, result->passes == 1 ? "" : "es");
+    if (result->new_passes != result->passes)
+        fprintf(stderr, ", %" PRIu64 " of them in this run,", result->new_passes);
+    fprintf(stderr, " in %.*f s, saved in", seconds < 10 ? 2 : 0, seconds);
+    for (int i = 0; i < args->output_count; i++)
+        fprintf(stderr, "%s '%s'", i ? "," : "", args->outputs[i]);
+    fputc('\n', stderr);
 }

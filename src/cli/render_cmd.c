@@ -92,6 +92,7 @@ static Status tell_interrupted(const Job *job, const RenderResult *result)
 static Status render_loaded(Job *job, const RenderOptions *options)
 {
     RenderResult result;
+    double start = clock_wall();
     Status status = render_scene(job->scene, options, job->args->diag, &result);
     progress_done(&job->progress);
     Status written = OK;
@@ -101,6 +102,8 @@ static Status render_loaded(Job *job, const RenderOptions *options)
         diag_fail(job->args->diag, written, "interrupted; the picture was not written");
     else if (status == ERR_INTERRUPTED)
         tell_interrupted(job, &result);
+    else if (status == OK && written == OK && result.passes > 0)
+        progress_say_passes(&job->progress, job->args, &result, clock_wall() - start);
     render_result_done(&result);
     return status != OK ? status : written;
 }

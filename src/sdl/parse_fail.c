@@ -33,6 +33,18 @@ static void note_open_brace(Parser *p, Span span)
         diag_note(p->diag, p->brace_spans[p->braces - 1], "this `{` has no `}`");
 }
 
+/* A quote that is missing turns the text around it inside out: if what went wrong stands right
+ * behind a string of several lines, say where that began. */
+static void note_long_string(Parser *p)
+{
+    const Token *at = raw_peek(p);
+    if (at == frame_top(p)->file->tokens || at[-1].kind != TOKEN_STRING)
+        return;
+    if (memchr(at[-1].text, '\n', at[-1].length))
+        diag_note(p->diag, at[-1].span,
+                  "this string runs over several lines; is its closing `\"` missing?");
+}
+
 static noreturn void leave(Parser *p, Status status)
 {
     p->status = status;
@@ -45,7 +57,10 @@ noreturn void parse_fail(Parser *p, Span span, const char *format, ...)
     va_start(args, format);
     diag_error_v(p->diag, span, format, args);
     va_end(args);
-    note_open_brace(p, span);
+    if (p->frame_count > 0) {
+        note_open_brace(p, span);
+        note_long_string(p);
+    }
     backtrace(p);
     leave(p, ERR_SYNTAX);
 }

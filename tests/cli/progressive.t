@@ -76,8 +76,17 @@ ok $? "a time limit ends it"
 run timeout 60 $P --time=1d --passes=2 -o "$T/both.exr" --progress=json
 [ "$code" -eq 0 ] && grep -q '"pass": 1, "passes": 2, "phase": ' "$T/err"
 ok $? "whichever limit comes first; progress counts passes"
-run "$PMS" "$T/s.pms" --no-photons -w 32 --height=24 --progressive --passes=4 -o "$T/plain.exr"
+tail -n 1 "$T/err" | grep -qE '^\{"done": true, "passes": 2, "passes_of_this_run": 2, "seconds": [0-9.e-]+, "files": \["[^"]*both.exr"\]\}$'
+ok $? "and says how it ended"
+run $P --passes=3 --resume -o "$T/both.exr"
+[ "$code" -eq 0 ] &&
+    grep -qE "^pms: 3 passes, 1 of them in this run, in [0-9.]+ s, saved in '.*both.exr'$" "$T/err"
+ok $? "so it does in a log"
+run $P --passes=4 --resume -o "$T/both.exr" --progress=none
 [ "$code" -eq 0 ] && [ ! -s "$T/err" ]
+ok $? "unless it is told not to"
+run "$PMS" "$T/s.pms" --no-photons -w 32 --height=24 --progressive --passes=4 -o "$T/plain.exr"
+[ "$code" -eq 0 ] && ! grep -v "^pms: 4 passes in" "$T/err"
 ok $? "without photon maps"
 run "$PMS" "$T/s.pms" --integrator=path --light-radius=0.5 -w 32 --height=24 --progressive --passes=4 -o "$T/path.exr"
 ok "$code" "by paths"
@@ -122,7 +131,7 @@ for option in --passes=3 --time=3 --resume; do
 done
 fails 2 "whole number from 1" "no passes" $P --passes=0 -o "$T/a.exr"
 for time in 0 -1 5x 3mm m nan 1e30d ''; do
-    fails 2 "a time such as" "--time='$time'" $P --time="$time" -o "$T/a.exr"
+    fails 2 "a time such as|wants T after it .*90s" "--time='$time'" $P --time="$time" -o "$T/a.exr"
 done
 fails 2 "\+A has no meaning" "+A" $P +A0.1 -o "$T/a.exr"
 run "$PMS" explain "$T/s.pms" --progressive --passes=100 --time=2m

@@ -12,11 +12,13 @@ S
 run "$PMS" --help
 [ "$code" -eq 0 ] && grep -q "usage: pms" "$T/out" && [ ! -s "$T/err" ]
 ok $? "--help goes to standard output"
-for command in check explain; do
+for command in check explain validate; do
     run "$PMS" $command --help
     [ "$code" -eq 0 ] && grep -q "usage: pms $command" "$T/out"
     ok $? "$command --help"
 done
+grep -qE -- '--output=FILE .*side by side' "$T/out"
+ok $? "validate says what its -o writes"
 run "$PMS" --version
 [ "$code" -eq 0 ] && grep -q "^pms [0-9]" "$T/out"
 ok $? "--version"
@@ -24,6 +26,23 @@ ok $? "--version"
 fails 2 "wants one scene file" "no scene" "$PMS"
 fails 2 "wants one scene file, got 2: 'a.pms', 'b.pms'" "two scenes" "$PMS" a.pms b.pms
 fails 2 "no option --wdith.*did you mean --width" "a slip of the fingers" "$PMS" --wdith=3 "$T/s.pms"
+fails 2 "no option --integrater; did you mean --integrator\?" "and with a value behind it" \
+    "$PMS" --integrater path "$T/s.pms"
+fails 2 "no option -width; did you mean --width\?" "a long name behind one dash" "$PMS" -width 3 "$T/s.pms"
+fails 2 "no command 'rendr'; did you mean render\?" "a misspelled command" "$PMS" rendr "$T/s.pms"
+fails 2 "no command 'chekc'; did you mean check\?" "a misspelled command alone" "$PMS" chekc
+cp "$T/s.pms" "$T/explan"
+(cd "$T" && run "$PMS" explan -w 8 --height=6 -o slip.png && [ "$code" -eq 0 ])
+ok $? "but not if a scene is called so"
+fails 2 "^pms: error: --gi wants its value joined to it by =; did you mean --gi=gather\?$" \
+    "a value that wants =" "$PMS" --gi gather "$T/s.pms"
+fails 2 "wants one scene file, got 2" "a scene behind --gi is none" "$PMS" --gi "$T/s.pms" "$T/explan"
+fails 2 "^pms: error: --gi= wants HOW after it" "= and nothing" "$PMS" --gi= "$T/s.pms"
+fails 2 "^pms: error: --layers= wants LIST after it .*direct,caustic" "an empty list" \
+    "$PMS" --layers= "$T/s.pms" -o "$T/a.exr"
+fails 2 "^pms: error: --layers wants LIST after it" "an empty word" "$PMS" --layers "" "$T/s.pms"
+fails 2 "^pms: error: -w wants N after it" "a letter, = and nothing" "$PMS" -w= "$T/s.pms"
+fails 2 "-Q, --quality wants a whole number from 0 to 11, got '12'" "a letter's value" "$PMS" -Q 12 "$T/s.pms"
 fails 2 "no option -x" "unknown letter" "$PMS" -x "$T/s.pms"
 fails 2 "does not know the switch \+ZZ" "unknown switch" "$PMS" +ZZ "$T/s.pms"
 fails 2 "whole number from 1 to 65536" "zero-size image" "$PMS" --width=0 "$T/s.pms"
@@ -64,6 +83,12 @@ run "$PMS" "$T/s.pms" -w 32 --height 24 --aa 4 -o "$T/a.exr" -o "$T/a.png" --sta
 ok $? "two outputs, statistics, progress that never says 100 early"
 (cd "$T" && run "$PMS" s.pms -w 8 --height 6 && [ "$code" -eq 0 ] && [ -s s.exr ] && [ -s s.png ])
 ok $? "default output names"
+run "$PMS" "$T/s.pms" -w=8 --height=6 -o="$T/eq.png"
+[ "$code" -eq 0 ] && [ -s "$T/eq.png" ]
+ok $? "= behind a letter"
+run "$PMS" "$T/s.pms" -w 8 --height 6 --progress=line -o "$T/a.png"
+[ "$code" -eq 0 ] && grep -qE '^eye [0-9]+ %' "$T/err" && ! tr '\r\033' '~~' <"$T/err" | grep -q '~'
+ok $? "lines of progress in a log have no escape codes"
 run "$PMS" "$T/s.pms" -w 8 --height 6 --bits=16 --half --layers=direct,caustic,indirect,Z,N,albedo -o "$T/h.exr" -o "$T/h.png"
 [ "$code" -eq 0 ]
 ok $? "half, 16 bits, layers"
