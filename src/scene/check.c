@@ -194,6 +194,33 @@ static void check_media(const Scene *scene, Diag *diag)
     }
 }
 
+/* --- mirrors --------------------------------------------------------------------------------- */
+
+static bool texture_is_fresnel(const Texture *texture)
+{
+    for (int i = 0; i < texture->layer_count; i++)
+        if (texture->layers[i].finish->is_fresnel &&
+            !rgb_is_black(texture->layers[i].finish->reflection_max))
+            return true;
+    return false;
+}
+
+/* Fresnel's law takes an index of 1 for one that is not written.  One warning: objects share looks.
+ */
+static void check_fresnel(const Scene *scene, Diag *diag)
+{
+    for (uint32_t i = 0; i < scene->surface_count; i++) {
+        const Surface *s = &scene->surfaces[i];
+        if (s->interior->has_ior || interior_bends(s->interior) ||
+            !surface_has(s, texture_is_fresnel))
+            continue;
+        diag_warn(diag, WARN_RENDER, s->span,
+                  "reflection by `fresnel` wants an interior with an ior, and this object has "
+                  "none: it only reflects the first colour");
+        return;
+    }
+}
+
 static bool has_atmosphere(const Scene *scene)
 {
     const Atmosphere *air = &scene->atmosphere;
@@ -242,6 +269,7 @@ Status scene_check(Scene *scene, Diag *diag)
     }
     check_content(scene, diag);
     check_media(scene, diag);
+    check_fresnel(scene, diag);
     if (is_good)
         check_air(scene, diag);
     return is_good ? OK : ERR_SCENE;

@@ -157,6 +157,7 @@ static const Interior *interior_of_finish(Finisher *f, const Texture *texture)
         Interior interior = INTERIOR_DEFAULT;
         interior.span = texture->span;
         interior.ior = finish->ior != 0 ? finish->ior : 1;
+        interior.has_ior = finish->ior != 0;
         interior.caustics = finish->caustics;
         const Interior *kept = arena_copy(f->scene->arena, &interior, sizeof interior);
         f->has_failed |= !kept;

@@ -32,6 +32,7 @@ static void read_interior_ior(Parser *p, Interior *interior)
 {
     parse_next(p);
     interior->ior = read_ior(p);
+    interior->has_ior = true;
     if (interior->dispersion != DISPERSION_RATIO)
         interior->dispersion = DISPERSION_NONE;
 }

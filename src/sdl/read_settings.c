@@ -1,7 +1,7 @@
 /* global_settings, with photons{} and pms{}.  SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/read_int.h"
 
-enum { TRACE_LEVEL_MAX = 256, GATHER_MAX = 1000000 };
+enum { TRACE_LEVEL_MAX = 256, GATHER_MAX = 1000000, PHOTONS_MAX = 2000000000 };
 
 /* --- photons ------------------------------------------------------------------------------- */
 
@@ -67,18 +67,30 @@ static int read_trace_level(Parser *p)
     return (int)used;
 }
 
-static void read_photon_item(Parser *p, PhotonSettings *photons)
+/* A number of photons.  `on` is one in this language, and hardly meant. */
+static long read_photon_count(Parser *p, const char *what, long lowest)
+{
+    const Token first = *parse_peek(p);
+    bool is_flag = first.kind == KW_ON || first.kind == KW_YES || first.kind == KW_TRUE;
+    long count = parse_int(p, what, lowest, PHOTONS_MAX);
+    if (is_flag && count == 1)
+        parse_warn(p, WARN_VALUE, first.span, "%s wants a number of photons; `%s` is one photon",
+                   what, keyword_text(first.kind));
+    return count;
+}
+
+/* *spacing gets the place of spacing. */
+static void read_photon_item(Parser *p, PhotonSettings *photons, Span *spacing)
 {
     Token head = *parse_peek(p);
     switch (head.kind) {
     case KW_SPACING:
-        parse_next(p);
+        *spacing = parse_next(p).span;
         photons->spacing = read_above_zero(p, "spacing");
-        photons->count = 0;
         break;
     case KW_COUNT:
         parse_next(p);
-        photons->count = parse_int(p, "count", 0, 2000000000);
+        photons->count = read_photon_count(p, "count", 0);
         break;
     case KW_GATHER:
         read_gather(p, photons);
@@ -116,8 +128,12 @@ void read_global_photons(Parser *p, PhotonSettings *photons)
 {
     Token word = read_open(p);
     photons->span = word.span;
+    Span spacing = SPAN_NONE;
     while (!read_close(p))
-        read_photon_item(p, photons);
+        read_photon_item(p, photons, &spacing);
+    if (photons->count > 0 && spacing.source)
+        parse_warn(p, WARN_VALUE, spacing, "spacing has no effect beside count %ld",
+                   photons->count);
     photons->is_on = photons->gather_max > 0;
 }
 
@@ -155,7 +171,7 @@ static void read_pms_setting(Parser *p, PmsSettings *pms)
         read_gi_method(p, pms);
         break;
     case GLOBAL_PHOTONS:
-        pms->global_count = parse_int(p, "global_photons", 1, 2000000000);
+        pms->global_count = read_photon_count(p, "global_photons", 1);
         break;
     case KERNEL:
         read_kernel(p, pms);

@@ -32,6 +32,25 @@ static void read_stray_setting(Parser *p)
     parse_warn(p, WARN_LANGUAGE, word.span, "this belongs in global_settings: it is ignored");
 }
 
+/* A declared fog may be finished by whoever uses it; one in the scene is not. */
+static const Fog *read_fog_statement(Parser *p)
+{
+    const Fog *fog = read_fog(p);
+    if (!(fog->distance > 0))
+        parse_warn(p, WARN_VALUE, fog->span, "a fog without a distance is not seen");
+    return fog;
+}
+
+static const Rainbow *read_rainbow_statement(Parser *p)
+{
+    const Rainbow *bow = read_rainbow(p);
+    if (bow->map_count == 0)
+        parse_warn(p, WARN_VALUE, bow->span, "a rainbow without a color_map is not seen");
+    else if (!(bow->width > 0))
+        parse_warn(p, WARN_VALUE, bow->span, "a rainbow without a width is not seen");
+    return bow;
+}
+
 /* media, fog and rainbow add up. */
 static void read_atmosphere(Parser *p, TokenKind word)
 {
@@ -41,10 +60,10 @@ static void read_atmosphere(Parser *p, TokenKind word)
                                                         &air->media_count, read_media(p));
     else if (word == KW_FOG)
         air->fogs = (const Fog *const *)read_append(p, (const void *const *)air->fogs,
-                                                    &air->fog_count, read_fog(p));
+                                                    &air->fog_count, read_fog_statement(p));
     else
-        air->rainbows = (const Rainbow *const *)read_append(p, (const void *const *)air->rainbows,
-                                                            &air->rainbow_count, read_rainbow(p));
+        air->rainbows = (const Rainbow *const *)read_append(
+            p, (const void *const *)air->rainbows, &air->rainbow_count, read_rainbow_statement(p));
 }
 
 void read_statement(Parser *p)

@@ -127,6 +127,7 @@ enum { DISPERSION_COEFFICIENTS = 8 }; /* those not given are 0 */
 typedef struct Interior {
     Span span;
     double ior;      /* 1: as outside; of formulas at the helium d line */
+    bool has_ior;    /* it was written, be it 1 */
     double fade_distance, fade_power; /* scene units; distance 0: no absorption */
     Rgb fade_color;
     float caustics;

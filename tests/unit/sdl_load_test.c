@@ -124,6 +124,32 @@ static void test_status(void **state)
     assert_int_equal(loaded.status, ERR_SYNTAX);
 }
 
+/* As in POV-Ray, spacing does not count beside a count above 0, in either order. */
+static void test_count_and_spacing(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *items;
+        long count;
+        double spacing;
+    } rows[] = {{"count 500 spacing 0.25", 500, 0.25},
+                {"spacing 0.25 count 500", 500, 0.25},
+                {"count 0 spacing 0.25", 0, 0.25},
+                {"spacing 0.25", 0, 0.25}};
+    SdlOptions options = {.threads = 1};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        char text[128];
+        Loaded loaded;
+        snprintf(text, sizeof text, "#version 3.7; global_settings { photons { %s } }",
+                 rows[i].items);
+        load(&loaded, "a.pms", text, &options);
+        assert_int_equal(loaded.status, OK);
+        assert_int_equal(loaded.settings.photons.count, rows[i].count);
+        assert_true(loaded.settings.photons.spacing == rows[i].spacing);
+        assert_int_equal(strstr(loaded.heard, "spacing has no effect") != NULL, rows[i].count > 0);
+    }
+}
+
 /* The look of an error: place, line, caret under the word, way there. */
 static void test_look(void **state)
 {
@@ -187,9 +213,10 @@ static void test_povray_include(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_options), cmocka_unit_test(test_reserved_declare),
-        cmocka_unit_test(test_gamma),   cmocka_unit_test(test_status),
-        cmocka_unit_test(test_look),    cmocka_unit_test(test_povray_include),
+        cmocka_unit_test(test_options),        cmocka_unit_test(test_reserved_declare),
+        cmocka_unit_test(test_gamma),          cmocka_unit_test(test_status),
+        cmocka_unit_test(test_look),           cmocka_unit_test(test_count_and_spacing),
+        cmocka_unit_test(test_povray_include),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
