@@ -35,16 +35,66 @@ static void print_features(const Explanation *e)
     }
 }
 
-static void print_lights(const char *map, const LightBooks *books, int count)
+/* What a map was asked for by: by targets, or by indirect light. */
+typedef struct Asked {
+    double count, spacing, global; /* NAN: not by this */
+} Asked;
+
+static Asked asked_for(const Explanation *e, bool is_aimed, bool is_indirect)
 {
+    const Plan *plan = &e->plan;
+    bool has_count = is_aimed && plan->caustic_photons > 0;
+    return (Asked){
+        .count = has_count ? (double)plan->caustic_photons : NAN,
+        .spacing = is_aimed && !has_count ? e->scene->settings.photons.spacing : NAN,
+        .global = is_indirect ? (double)plan->global_photons : NAN,
+    };
+}
+
+/* A map's sources of light, what it was asked for by, and its name. */
+typedef struct MapRows {
+    const char *name;
+    const LightBooks *books; /* NULL: the map is not made */
+    int count;
+    Asked asked;
+} MapRows;
+
+enum { MAP_ROWS = 3 };
+
+static void map_rows(const Explanation *e, MapRows rows[MAP_ROWS])
+{
+    const PhotonBooks *books = &e->books;
+    const Plan *plan = &e->plan;
+    rows[0] = (MapRows){"caustic", books->caustic, books->caustic_count, asked_for(e, true, false)};
+    rows[1] = (MapRows){"global", books->global, books->global_count, asked_for(e, false, true)};
+    rows[2] = (MapRows){"volume", books->volume, books->volume_count,
+                        asked_for(e, plan->has_volume_focus, plan->has_volume_indirect)};
+}
+
+static void print_asked(const Asked *asked)
+{
+    if (!isnan(asked->count))
+        printf("count %.0f", asked->count);
+    if (!isnan(asked->spacing))
+        printf("spacing %g", asked->spacing);
+    if (!isnan(asked->global))
+        printf("%sglobal_photons %.0f", isnan(asked->count) && isnan(asked->spacing) ? "" : " and ",
+               asked->global);
+}
+
+static void print_lights(const MapRows *map)
+{
+    const LightBooks *books = map->books;
     if (!books)
         return;
     uint64_t total = 0;
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < map->count; i++)
         total += books[i].budget;
-    printf("\n%s photons, %" PRIu64 " to send", map, total);
+    printf("\n%s photons: ", map->name);
+    print_asked(&map->asked);
+    printf(" asked for, %" PRIu64 " to send", total);
     printf("\n%-20s %12s %8s %10s\n", "light", "power", "share", "photons");
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < map->count; i++)
         printf("%-20s %12.5g %7.2f%% %10" PRIu64 "\n", books[i].name, books[i].power,
                100 * books[i].share, books[i].budget);
 }
@@ -78,9 +128,10 @@ static void print_text(const Explanation *e)
            e->scene->object_count == 1 ? "" : "s", e->scene->light_count,
            e->scene->light_count == 1 ? "" : "s");
     print_features(e);
-    print_lights("caustic", e->books.caustic, e->books.caustic_count);
-    print_lights("global", e->books.global, e->books.global_count);
-    print_lights("volume", e->books.volume, e->books.volume_count);
+    MapRows maps[MAP_ROWS];
+    map_rows(e, maps);
+    for (int i = 0; i < MAP_ROWS; i++)
+        print_lights(&maps[i]);
     if (!e->books.caustic && !e->books.global && !e->books.volume)
         printf("\nno photon pass\n");
     print_passes(e);
@@ -101,10 +152,11 @@ static void print_json_feature(const Explanation *e, int id)
     putchar('}');
 }
 
-static void print_json_lights(const char *map, const LightBooks *books, int count)
+static void print_json_lights(const MapRows *map)
 {
-    printf(",\n  \"%s_photons\": [", map);
-    for (int i = 0; books && i < count; i++) {
+    const LightBooks *books = map->books;
+    printf(",\n  \"%s_photons\": [", map->name);
+    for (int i = 0; books && i < map->count; i++) {
         printf("%s\n    {\"light\": ", i ? "," : "");
         json_string(stdout, books[i].name);
         printf(", \"power\": ");
@@ -114,6 +166,15 @@ static void print_json_lights(const char *map, const LightBooks *books, int coun
         printf(", \"photons\": %" PRIu64 "}", books[i].budget);
     }
     printf("%s]", books ? "\n  " : "");
+    if (!books)
+        return;
+    printf(",\n  \"%s_asked\": {\"count\": ", map->name);
+    json_number(stdout, map->asked.count);
+    printf(", \"spacing\": ");
+    json_number(stdout, map->asked.spacing);
+    printf(", \"global_photons\": ");
+    json_number(stdout, map->asked.global);
+    putchar('}');
 }
 
 static void print_json_passes(const Explanation *e)
@@ -138,9 +199,10 @@ static void print_json(const Explanation *e)
     for (int i = 0; i < FEATURE_COUNT; i++)
         print_json_feature(e, i);
     printf("\n  ]");
-    print_json_lights("caustic", e->books.caustic, e->books.caustic_count);
-    print_json_lights("global", e->books.global, e->books.global_count);
-    print_json_lights("volume", e->books.volume, e->books.volume_count);
+    MapRows maps[MAP_ROWS];
+    map_rows(e, maps);
+    for (int i = 0; i < MAP_ROWS; i++)
+        print_json_lights(&maps[i]);
     print_json_passes(e);
     printf("\n}\n");
 }

@@ -23,6 +23,23 @@ run "$PMS" --version
 [ "$code" -eq 0 ] && grep -q "^pms [0-9]" "$T/out"
 ok $? "--version"
 
+# What was asked for stands beside what is sent.
+sed 's/assumed_gamma 1/& photons { count 900 } pms { global_photons 700 }/
+    s/^sphere.*/plane { y, -1 } sphere { 0, 1 pigment { rgbf 1 } interior { ior 1.5 } }/' "$T/s.pms" >"$T/p.pms"
+run "$PMS" explain "$T/p.pms" --gi
+[ "$code" -eq 0 ] && grep -qE '^caustic photons: count 900 asked for, [0-9]+ to send$' "$T/out" &&
+    grep -q '^global photons: global_photons 700 asked for, 700 to send$' "$T/out"
+ok $? "explain: photons asked for and sent"
+sed 's/count 900/spacing 0.25/' "$T/p.pms" >"$T/q.pms"
+run "$PMS" explain "$T/q.pms"
+[ "$code" -eq 0 ] && grep -qE '^caustic photons: spacing 0.25 asked for, [0-9]+ to send$' "$T/out"
+ok $? "explain: by spacing"
+run "$PMS" explain "$T/p.pms" --gi --json
+[ "$code" -eq 0 ] &&
+    grep -qF '"caustic_asked": {"count": 900, "spacing": null, "global_photons": null}' "$T/out" &&
+    grep -qF '"global_asked": {"count": null, "spacing": null, "global_photons": 700}' "$T/out"
+ok $? "explain --json: the same"
+
 fails 2 "wants one scene file" "no scene" "$PMS"
 fails 2 "wants one scene file, got 2: 'a.pms', 'b.pms'" "two scenes" "$PMS" a.pms b.pms
 fails 2 "no option --wdith.*did you mean --width" "a slip of the fingers" "$PMS" --wdith=3 "$T/s.pms"
