@@ -47,7 +47,7 @@ ALLCFLAGS := -std=c17 -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 $(BASEFLAGS)
 ALLCXXFLAGS := -std=c++17 $(BASEFLAGS) $(WARN) $(CXXFLAGS)
 LIBS     := $(PKGLIB) -lm -lstdc++ -lpthread
 
-.PHONY: all help deps demo check check-all check-kill parity bench fuzz gallery floors headers install clean
+.PHONY: all help deps demo check check-all check-kill parity bench fuzz gallery floors headers install uninstall clean
 .DEFAULT_GOAL := all
 .SECONDARY:
 
@@ -153,12 +153,21 @@ $(B)/tests/%_test: $(B)/tests/%_test.o $(B)/libpms.a
 	@echo "  link    $@"
 	$(Q)$(CC) $(OPT) -pthread $(LDFLAGS) -o $@ $^ $(LIBS) -lcmocka
 
+TARGET    = $(DESTDIR)$(PREFIX)
+INSTALLED = $(TARGET)/bin/pms $(patsubst stdlib/%,$(TARGET)/share/pms/%,$(wildcard stdlib/*)) \
+            $(patsubst man/%,$(TARGET)/share/man/man1/%,$(wildcard man/*.1)) \
+            $(patsubst man/%,$(TARGET)/share/man/man5/%,$(wildcard man/*.5))
+
 install: all ## install program, materials and man pages under $(PREFIX)
-	install -D -m 755 $(B)/pms $(DESTDIR)$(PREFIX)/bin/pms
-	install -d $(DESTDIR)$(PREFIX)/share/pms $(DESTDIR)$(PREFIX)/share/man/man1 $(DESTDIR)$(PREFIX)/share/man/man5
-	install -m 644 $(wildcard stdlib/*) $(DESTDIR)$(PREFIX)/share/pms
-	install -m 644 man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
-	install -m 644 man/*.5 $(DESTDIR)$(PREFIX)/share/man/man5
+	install -D -m 755 $(B)/pms $(TARGET)/bin/pms
+	install -d $(TARGET)/share/pms $(TARGET)/share/man/man1 $(TARGET)/share/man/man5
+	install -m 644 $(wildcard stdlib/*) $(TARGET)/share/pms
+	install -m 644 man/*.1 $(TARGET)/share/man/man1
+	install -m 644 man/*.5 $(TARGET)/share/man/man5
+
+uninstall: ## remove what install put there
+	rm -f $(INSTALLED)
+	@if [ -d $(TARGET)/share/pms ]; then rmdir $(TARGET)/share/pms || true; fi
 
 clean: ## remove what was built
 	rm -rf build out

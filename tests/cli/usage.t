@@ -25,7 +25,7 @@ ok $? "--version"
 
 # What was asked for stands beside what is sent.
 sed 's/assumed_gamma 1/& photons { count 900 } pms { global_photons 700 }/
-    s/^sphere.*/plane { y, -1 } sphere { 0, 1 pigment { rgbf 1 } interior { ior 1.5 } }/' "$T/s.pms" >"$T/p.pms"
+    s/^sphere.*/plane { y, -1 pigment { rgb 1 } } sphere { 0, 1 pigment { rgbf 1 } interior { ior 1.5 } }/' "$T/s.pms" >"$T/p.pms"
 run "$PMS" explain "$T/p.pms" --gi
 [ "$code" -eq 0 ] && grep -qE '^caustic photons: count 900 asked for, [0-9]+ to send$' "$T/out" &&
     grep -q '^global photons: global_photons 700 asked for, 700 to send$' "$T/out"
