@@ -4,6 +4,7 @@
 
 #include "base/mem.h"
 #include "photon/emission_int.h"
+#include "photon/faint_int.h"
 #include "photon/gather.h"
 
 #include <string.h>
@@ -238,20 +239,8 @@ static Status make_map(const Tracer *tracer, MapKind kind, const PhotonOptions *
 /* How far a gather widens beyond its radius at least. */
 #define WIDEN 3
 
-/* Return the light of the brightest lamp in the middle of the scene. */
-static float brightest_light(const Scene *scene, V3 middle)
-{
-    float most = 0;
-    for (int i = 0; i < scene->light_count; i++) {
-        const Light *light = &scene->lights[i];
-        double fade = light_fade(light, v3_dist(light->location, middle));
-        most = fmaxf(most, rgb_max(light->color) * (float)fade);
-    }
-    return most;
-}
-
 /* Return the radius at which a photon of mean power is too faint to be a speck. */
-static double faint_radius(const Tracer *tracer, const PhotonMap *map, const LightBooks *books)
+static double speck_radius(const Tracer *tracer, const PhotonMap *map, const LightBooks *books)
 {
     const Scene *scene = tracer_scene(tracer);
     Rgb flux = RGB_BLACK;
@@ -260,10 +249,10 @@ static double faint_radius(const Tracer *tracer, const PhotonMap *map, const Lig
         flux = rgb_add(flux, books[i].flux_stored);
         stored += books[i].stored;
     }
-    double light = (double)brightest_light(scene, photon_map_center(map));
-    if (stored == 0 || !(light > 0))
+    if (stored == 0)
         return 0;
-    return sqrt((double)rgb_max(flux) / ((double)stored * light * FAINT_PHOTON * PMS_PI));
+    double mean = (double)rgb_max(flux) / (double)stored;
+    return faint_radius(scene, photon_map_center(map), mean, FAINT_PHOTON);
 }
 
 static void set_radii(const Tracer *tracer, PhotonMaps *maps)
@@ -273,7 +262,7 @@ static void set_radii(const Tracer *tracer, PhotonMaps *maps)
     if (maps->caustic) {
         maps->caustic_radius =
             settings->radius > 0 ? settings->radius : photon_map_radius(maps->caustic, most);
-        maps->caustic_far = fmax(faint_radius(tracer, maps->caustic, maps->books.caustic),
+        maps->caustic_far = fmax(speck_radius(tracer, maps->caustic, maps->books.caustic),
                                  WIDEN * maps->caustic_radius);
     }
     if (maps->global) {

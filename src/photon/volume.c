@@ -4,16 +4,32 @@
 
 #include "base/mem.h"
 #include "base/work.h"
+#include "photon/faint_int.h"
 #include "photon/gather.h"
 #include "photon/photon_map_int.h"
+#include "trace/media_along.h"
 
 #include <string.h>
 
 enum { STACK_MAX = 80, CHUNK_BLOCKS = 64 };
 
+/* Photons of a block that tell how bright all of them are. */
+enum { TRIED_PHOTONS = 4 };
+
+/* The kernel in the middle of the disk, over its mean. */
+#define KERNEL_MOST 2
+
 /* Planes at the ends of a ray count as no steeper than this: rise of the place where a ray beside
  * it meets them over the way beside. */
 #define STEEP_MOST 8
+
+/* A photon that gives a ray less than this part of the light of the brightest lamp is not seen at
+ * all: it is less than half the first step of a picture of 8 bits (IEC 61966-2-1). */
+#define FAINT_PART (0.5 / (255 * 12.92))
+
+/* Where there is no lamp, a ball is at most this many times as wide as where photons are of common
+ * density: one photon in it gives 1/200 of what a ray gets in such a place. */
+#define FAR_RADII 3
 
 /* Rounding of where a ray enters and leaves a box. */
 #define BOX_SLACK 0x1p-20f
@@ -33,9 +49,11 @@ struct VolumeIndex {
 
 typedef struct IndexWork {
     VolumeIndex *index;
+    const Tracer *tracer;
     GatherScratch **scratch; /* per thread */
     int nearest;
-    float radius; /* 0: from the density */
+    double radius; /* 0: from the density, */
+    double far;    /* at most this, where no lamp tells what can be seen */
 } IndexWork;
 
 static V3 block_center(const PhotonBlock *block)
@@ -53,7 +71,7 @@ static V3 block_center(const PhotonBlock *block)
     return v3(sum[0] * scale, sum[1] * scale, sum[2] * scale);
 }
 
-static float radius_around(const PhotonMap *map, V3 p, int nearest, GatherScratch *scratch)
+static double radius_around(const PhotonMap *map, V3 p, int nearest, GatherScratch *scratch)
 {
     size_t count = photon_map_count(map);
     GatherLimits limits = {.max_photons = (size_t)nearest < count ? nearest : (int)count,
@@ -63,7 +81,57 @@ static float radius_around(const PhotonMap *map, V3 p, int nearest, GatherScratc
     const uint32_t *found;
     double radius2;
     photon_nearest(map, p, v3(0, 0, 1), &limits, scratch, &found, &radius2);
-    return radius2 > 0 && isfinite(radius2) ? (float)sqrt(radius2) : 0;
+    return radius2 > 0 && isfinite(radius2) ? sqrt(radius2) : 0;
+}
+
+static Rgb lane_power(const PhotonBlock *block, int i)
+{
+    uint32_t rgbe = block->rgbe[i];
+    const uint8_t bytes[4] = {(uint8_t)rgbe, (uint8_t)(rgbe >> 8), (uint8_t)(rgbe >> 16),
+                              (uint8_t)(rgbe >> 24)};
+    return rgbe_decode(bytes);
+}
+
+/* Return the light that one of a block's photons gives a ray, times the area it is spread over: the
+ * mean of a few. */
+static double light_of_photon(const Tracer *tracer, const PhotonMap *map, const PhotonBlock *block)
+{
+    Rgb sum = RGB_BLACK;
+    int count = 0;
+    for (int i = 0; i < BLOCK_PHOTONS; i += BLOCK_PHOTONS / TRIED_PHOTONS) {
+        V3 at = v3((double)block->pos[0][i], (double)block->pos[1][i], (double)block->pos[2][i]);
+        if (!v3_is_finite(at))
+            continue;
+        V3 p = v3_add(map->center, at);
+        Interiors inside;
+        MediaHere here;
+        MediaPoint point;
+        interiors_at(tracer, p, &inside);
+        media_here(tracer, &inside, &here);
+        media_at(&here, p, &point);
+        sum = rgb_add(sum, rgb_mul(point.scattering, lane_power(block, i)));
+        count++;
+    }
+    return count > 0 ? (double)rgb_max(sum) / count : 0;
+}
+
+/* Return the radius beyond which light of a block need not be spread. */
+static double most_radius(const IndexWork *work, const PhotonBlock *block)
+{
+    const PhotonMap *map = work->index->map;
+    double light = KERNEL_MOST * light_of_photon(work->tracer, map, block);
+    double faint = faint_radius(tracer_scene(work->tracer), map->center, light, FAINT_PART);
+    return faint > 0 ? faint : work->far;
+}
+
+static float block_radius(const IndexWork *work, const PhotonBlock *block, GatherScratch *scratch)
+{
+    const PhotonMap *map = work->index->map;
+    if (work->radius > 0)
+        return (float)work->radius;
+    V3 p = v3_add(map->center, block_center(block));
+    double radius = radius_around(map, p, work->nearest, scratch);
+    return (float)fmin(radius, most_radius(work, block));
 }
 
 static void find_radii(void *ctx, size_t chunk, int thread)
@@ -71,12 +139,8 @@ static void find_radii(void *ctx, size_t chunk, int thread)
     IndexWork *work = ctx;
     const PhotonMap *map = work->index->map;
     uint32_t first = (uint32_t)chunk * CHUNK_BLOCKS, end = first + CHUNK_BLOCKS;
-    for (uint32_t i = first; i < end && i < map->block_count; i++) {
-        V3 p = v3_add(map->center, block_center(&map->blocks[i]));
-        work->index->radius[i] = work->radius > 0
-                                     ? work->radius
-                                     : radius_around(map, p, work->nearest, work->scratch[thread]);
-    }
+    for (uint32_t i = first; i < end && i < map->block_count; i++)
+        work->index->radius[i] = block_radius(work, &map->blocks[i], work->scratch[thread]);
 }
 
 static VolumeBox block_box(const PhotonBlock *block, float radius)
@@ -119,13 +183,13 @@ static bool make_scratch(IndexWork *work, int threads)
     return work->scratch != NULL;
 }
 
-Status volume_index_new(const PhotonMap *map, int nearest, double radius, int threads, Diag *diag,
-                        VolumeIndex **out)
+Status volume_index_new(const Tracer *tracer, const PhotonMap *map, int nearest, double radius,
+                        int threads, Diag *diag, VolumeIndex **out)
 {
     *out = NULL;
     uint32_t blocks = map->block_count;
     VolumeIndex *index = mem_alloc(sizeof *index);
-    IndexWork work = {.index = index, .nearest = nearest, .radius = (float)radius};
+    IndexWork work = {.index = index, .tracer = tracer, .nearest = nearest, .radius = radius};
     if (!index)
         return diag_no_memory(diag, "photons in media");
     index->map = map;
@@ -134,6 +198,8 @@ Status volume_index_new(const PhotonMap *map, int nearest, double radius, int th
     Status status = index->boxes && index->radius && make_scratch(&work, threads)
                         ? OK
                         : diag_no_memory(diag, "photons in media");
+    if (!(radius > 0))
+        work.far = FAR_RADII * volume_radius(map, nearest);
     if (status == OK)
         status = work_for(threads, (blocks + CHUNK_BLOCKS - 1) / CHUNK_BLOCKS, find_radii, &work);
     if (status == OK)
@@ -226,9 +292,6 @@ static bool is_cut(const VolumeQuery *query, const VolumeBox *box)
 static void visit_photon(const VolumeQuery *query, const PhotonBlock *block, int i, float along,
                          float way, float kernel)
 {
-    uint32_t rgbe = block->rgbe[i];
-    const uint8_t bytes[4] = {(uint8_t)rgbe, (uint8_t)(rgbe >> 8), (uint8_t)(rgbe >> 16),
-                              (uint8_t)(rgbe >> 24)};
     uint16_t from = block->from[i];
     float away[3];
     for (int axis = 0; axis < 3; axis++)
@@ -237,7 +300,7 @@ static void visit_photon(const VolumeQuery *query, const PhotonBlock *block, int
                            .way = (double)way,
                            .aside = {(double)away[0], (double)away[1], (double)away[2]},
                            .from = direction_decode((uint8_t)from, (uint8_t)(from >> 8)),
-                           .power = rgb_scale(rgbe_decode(bytes), kernel),
+                           .power = rgb_scale(lane_power(block, i), kernel),
                            .is_focused = block->flags[i] == PHOTON_FOCUSED};
     query->visit(query->ctx, &photon);
 }
@@ -247,7 +310,7 @@ static void visit_block(const VolumeQuery *query, uint32_t number)
 {
     const PhotonBlock *block = &query->index->map->blocks[number];
     float radius2 = query->index->radius[number] * query->index->radius[number];
-    float over2 = 1 / radius2, most = 2 / (float)PMS_PI * over2;
+    float over2 = 1 / radius2, most = KERNEL_MOST / (float)PMS_PI * over2;
     float along[BLOCK_PHOTONS], away2[BLOCK_PHOTONS], way[BLOCK_PHOTONS], left[BLOCK_PHOTONS];
     const float *begin = query->begin_slope, *end = query->end_slope;
     for (int i = 0; i < BLOCK_PHOTONS; i++) {

@@ -1,25 +1,28 @@
 /* Photons in media, found by rays: beside gather.h all that the eye pass sees of photon/.
  *
- * A photon lights the ball around it whose radius fits how dense photons are there; a ray takes
- * from it what it would from a disk across the ray.  So one walk through the tree finds all the
- * light along a ray, however long.  SPDX-License-Identifier: Apache-2.0 */
+ * A photon lights the ball around it whose radius fits how dense photons are there, but is none so
+ * wide that the photon could not be seen in less; a ray takes from it what it would from a disk
+ * across the ray.  So one walk through the tree finds all the light along a ray, however long.
+ * SPDX-License-Identifier: Apache-2.0 */
 #ifndef PMS_PHOTON_VOLUME_H
 #define PMS_PHOTON_VOLUME_H
 
 #include "math/ray.h"
 #include "math/rgb.h"
 #include "photon/photon_map.h"
+#include "trace/trace.h"
 
 typedef struct VolumeIndex VolumeIndex;
 
 /* Make the index of a map that holds photons of media, which must outlive it.
  *
+ * tracer   of the scene, for its lamps and media.
  * nearest  photons in the ball around each.
  * radius   of all balls, scene units; 0: from the density.
  *
  * ERR_MEMORY, ERR_INTERRUPTED or OK.  Free with volume_index_free. */
-Status volume_index_new(const PhotonMap *map, int nearest, double radius, int threads, Diag *diag,
-                        VolumeIndex **out);
+Status volume_index_new(const Tracer *tracer, const PhotonMap *map, int nearest, double radius,
+                        int threads, Diag *diag, VolumeIndex **out);
 void volume_index_free(VolumeIndex *index);
 
 /* Return the radius that fits the middle density of a map, or 0; scene units. */

@@ -107,7 +107,8 @@ static Status make_volume(Pass *pass)
             series->first->volume = radius > 0 ? radius : volume_radius(map, VOLUME_PHOTONS);
         radius = series->first->volume * series->shrink;
     }
-    return volume_index_new(map, VOLUME_PHOTONS, radius, threads, pass->diag, &pass->volume);
+    return volume_index_new(pass->tracer, map, VOLUME_PHOTONS, radius, threads, pass->diag,
+                            &pass->volume);
 }
 
 static Status make_maps(Pass *pass)

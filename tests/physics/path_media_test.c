@@ -156,7 +156,8 @@ static Mean by_photons(const char *text, int samples)
         VolumeIndex *volume;
         lit_make(&lit, text, 2, (uint64_t)seed);
         assert_non_null(lit.maps.volume);
-        assert_int_equal(volume_index_new(lit.maps.volume, NEAREST, 0, 2, &lit.diag, &volume), OK);
+        assert_int_equal(
+            volume_index_new(lit.tracer, lit.maps.volume, NEAREST, 0, 2, &lit.diag, &volume), OK);
         EyeOptions options = {.width = 1, .height = 1, .seed = 3, .volume = volume};
         assert_int_equal(eye_thread_new(lit.tracer, &options, &lit.diag, &eye), OK);
         double part[PART_COUNT] = {0};

@@ -31,8 +31,9 @@ static View view_within(LitScene *lit, double radius, int samples)
     EyeThread *eye;
     VolumeIndex *volume = NULL;
     if (lit->maps.volume)
-        assert_int_equal(
-            volume_index_new(lit->maps.volume, NEAREST, radius, 2, &lit->diag, &volume), OK);
+        assert_int_equal(volume_index_new(lit->tracer, lit->maps.volume, NEAREST, radius, 2,
+                                          &lit->diag, &volume),
+                         OK);
     EyeOptions options = {.width = 1, .height = 1, .seed = 3, .volume = volume};
     assert_int_equal(eye_thread_new(lit->tracer, &options, &lit->diag, &eye), OK);
     View out = {.sum = 0};
@@ -413,6 +414,70 @@ static void threads_do_not_matter(void **state)
     }
 }
 
+/* --- how far a photon glows ----------------------------------------------------------------- */
+
+static void count_photon(void *ctx, const VolumePhoton *photon)
+{
+    int *count = ctx;
+    *count += rgb_max(photon->power) > 0;
+}
+
+static int photons_on_ray(const VolumeIndex *index, double x)
+{
+    int count = 0;
+    Ray ray = {v3(x, -20, 0), v3(0, 1, 0), 0, INFINITY};
+    VolumeEnds none = {v3(0, 0, 0), v3(0, 0, 0)};
+    volume_along(index, &ray, 40, &none, count_photon, &count);
+    return count;
+}
+
+/* Photons in two heaps, far apart: the nearest of most of one lie in the other. */
+static PhotonMap *two_heaps(LitScene *lit, double apart, float power)
+{
+    enum { HEAP = 20 };
+    Photon *photons = mem_array(2 * HEAP, sizeof *photons);
+    PhotonMap *map;
+    Rng rng = rng_at(5, 0, 0);
+    for (int i = 0; i < 2 * HEAP; i++) {
+        V3 at = warp_sphere((V2){rng_double(&rng), rng_double(&rng)});
+        at = v3_mad(v3(i < HEAP ? 0 : apart, 0, 0), 0.1, at);
+        photons[i] = (Photon){.pos = {(float)at.x, (float)at.y, (float)at.z}};
+        rgbe_encode(rgb(power, power, power), &rng, photons[i].rgbe);
+        direction_encode(v3(0, 1, 0), &photons[i].phi, &photons[i].theta);
+    }
+    assert_int_equal(photon_map_new(&lit->diag, photons, 2 * HEAP, v3(0, 0, 0), 1, &map), OK);
+    return map;
+}
+
+/* A photon is spread no further than where it gives half the first step of a picture of 8 bits,
+ * 0.5/255/12.92, of the light of a lamp of 1: in smoke that scatters s, as far as r with
+ * 2 s power / (pi r^2) that part.  Between two heaps of photons it is dark then. */
+static void no_glow_where_no_light_goes(void **state)
+{
+    (void)state;
+    const double scattering = 0.5, part = 0.5 / 255 / 12.92, apart = 10;
+    const double powers[] = {1e-3, 1e-2};
+    for (int i = 0; i < 2; i++) {
+        LitScene lit;
+        lit_read(&lit,
+                 HEAD "}\n" EYE "light_source { <0,4,0> 1 }\nmedia { scattering { 1, 0.5 } }\n", 1,
+                 1);
+        PhotonMap *map = two_heaps(&lit, apart, (float)powers[i]);
+        VolumeIndex *index;
+        assert_int_equal(volume_index_new(lit.tracer, map, NEAREST, 0, 1, &lit.diag, &index), OK);
+        double reach = sqrt(2 * scattering * powers[i] / (PMS_PI * part));
+        assert_true(reach > 1 && reach + 0.2 < apart);
+        assert_int_equal(photons_on_ray(index, 0), 20);
+        assert_int_equal(photons_on_ray(index, -0.95 * reach + 0.1), 20);
+        assert_int_equal(photons_on_ray(index, -1.05 * reach - 0.1), 0);
+        if (2 * (reach + 0.2) < apart)
+            assert_int_equal(photons_on_ray(index, apart / 2), 0);
+        volume_index_free(index);
+        photon_map_free(map);
+        lit_done(&lit);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -424,6 +489,7 @@ int main(void)
         cmocka_unit_test(furnace_thin_to_dense),
         cmocka_unit_test(extreme_media_end),
         cmocka_unit_test(threads_do_not_matter),
+        cmocka_unit_test(no_glow_where_no_light_goes),
     };
     return cmocka_run_group_tests_name("volume", tests, NULL, NULL);
 }
