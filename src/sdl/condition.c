@@ -26,12 +26,9 @@ static Block *block_top(Parser *p)
 static const Token *next_branch(Parser *p, const Token *hash)
 {
     const TokenFile *file = frame_top(p)->file;
-    if (hash->jump)
-        return &file->tokens[hash->jump];
-    const Token *last = &file->tokens[file->count - 2];
-    if (last->kind == TOKEN_ILLEGAL)
-        parse_fail(p, last->span, "%s", last->text);
-    parse_fail(p, hash[1].span, "this `#%s` has no `#end`", keyword_text(hash[1].kind));
+    if (!hash->jump)
+        fail_no_end(p, file, hash);
+    return &file->tokens[hash->jump];
 }
 
 static const Token *end_of(Parser *p, const Token *hash)

@@ -42,27 +42,23 @@ void frame_push_macro(Parser *p, const Macro *macro, Span call)
                           .call = call});
 }
 
-static const char *block_word(const Block *block)
+noreturn void fail_no_end(Parser *p, const TokenFile *file, const Token *branch)
 {
-    return keyword_text(block->hash[1].kind);
-}
-
-/* Fail on the innermost open block; a string or comment that swallowed its #end comes first. */
-static noreturn void fail_open_block(Parser *p, const Frame *frame)
-{
-    const Block *block = &p->blocks[p->block_count - 1];
-    const TokenFile *file = frame->file;
+    const Token *opener = branch;
     const Token *last = &file->tokens[file->count >= 2 ? file->count - 2 : 0];
     if (last->kind == TOKEN_ILLEGAL)
         parse_fail(p, last->span, "%s", last->text);
-    parse_fail(p, block->hash[1].span, "this `#%s` has no `#end`", block_word(block));
+    for (const Token *at = branch; at-- > file->tokens;)
+        if (at->kind == TOKEN_HASH && at->jump && &file->tokens[at->jump] == opener)
+            opener = at;
+    parse_fail(p, opener[1].span, "this `#%s` has no `#end`", keyword_text(opener[1].kind));
 }
 
 static void frame_pop(Parser *p)
 {
     Frame *frame = frame_top(p);
     if (p->block_count > frame->block_base)
-        fail_open_block(p, frame);
+        fail_no_end(p, frame->file, p->blocks[p->block_count - 1].hash);
     symbols_drop(p, frame);
     if (frame->macro)
         p->macro_depth--;
@@ -177,7 +173,7 @@ static void advance(Parser *p)
         else
             frame_pop(p);
     } else if (token == frame->end && p->block_count > 0) {
-        fail_open_block(p, frame);
+        fail_no_end(p, frame->file, p->blocks[p->block_count - 1].hash);
     } else if (token->kind == TOKEN_HASH && !is_held(p, token)) {
         directive(p);
     } else if (token->kind == TOKEN_IDENTIFIER) {

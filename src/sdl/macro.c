@@ -46,7 +46,7 @@ void macro_directive(Parser *p, const Token *hash)
     macro->file = frame_top(p)->file;
     take_parameters(p, macro);
     if (!hash->jump)
-        parse_fail(p, hash[1].span, "this `#macro` has no `#end`");
+        fail_no_end(p, macro->file, hash);
     macro->begin = raw_peek(p);
     macro->end = &macro->file->tokens[hash->jump];
     cursor_move(p, macro->end + 2);

@@ -167,6 +167,9 @@ const Token *raw_peek(Parser *p);
 void cursor_move(Parser *p, const Token *at);
 /* parse_peek, but a directive that p->hold names is left alone: the `#` is returned. */
 const Token *peek_operator(Parser *p);
+/* Fail on the conditional or loop one of whose branches begins at the `#` `branch`; a string or
+ * comment that swallowed its #end comes first. */
+noreturn void fail_no_end(Parser *p, const TokenFile *file, const Token *branch);
 /* Set p->hold, and back. */
 void hold_set(Parser *p, Hold hold);
 /* Forget what was left standing for a hold: it is looked at afresh. */
