@@ -59,6 +59,17 @@ typedef struct GatherRay {
     bool has_gathered; /* light anew, on the way */
 } GatherRay;
 
+static void gather_ray_init(GatherRay *way, const ShapePoint *at, V3 d, const Interiors *inside,
+                            int depth)
+{
+    way->ray = trace_ray_from(at, d);
+    interiors_copy(&way->inside, inside);
+    way->weight = RGB_WHITE;
+    way->depth = depth;
+    way->passed = 0;
+    way->has_gathered = false;
+}
+
 static void gather_at(EyeThread *eye, const ShapePoint *at, V3 n, const Interiors *inside, int rays,
                       int depth, GatheredLight *out);
 
@@ -128,7 +139,7 @@ static void go_through(GatherRay *way, const SurfaceSample *s, Rgb share)
 {
     way->weight = rgb_mul(way->weight, share);
     if (!s->is_total_reflection) {
-        way->inside = s->inside_after;
+        interiors_copy(&way->inside, &s->inside_after);
         way->weight = rgb_scale(way->weight, (float)(s->ior_ratio * s->ior_ratio));
     }
     way->ray = trace_ray_from(&s->at, s->transmit_dir);
@@ -319,8 +330,8 @@ static void gather_cell(Cells *cells, EyeThread *eye, const ShapePoint *at, V3 n
         V3 d = cell_direction(cells, row, column, u.u, u.v);
         if (!(v3_dot(d, ng) > 0))
             continue;
-        GatherRay way = {
-            .ray = trace_ray_from(at, d), .inside = *inside, .weight = RGB_WHITE, .depth = depth};
+        GatherRay way;
+        gather_ray_init(&way, at, d, inside, depth);
         way.inside.wavelength = 0; /* what is gathered serves rays of all wavelengths */
         double distance;
         Rgb found = follow(eye, &way, &distance);
@@ -427,7 +438,8 @@ Rgb final_gather_few(EyeThread *eye, const ShapePoint *at, V3 n, const Interiors
         if (!(v3_dot(d, ng) > 0))
             continue;
         double distance;
-        GatherRay way = {.ray = trace_ray_from(at, d), .inside = *inside, .weight = RGB_WHITE};
+        GatherRay way;
+        gather_ray_init(&way, at, d, inside, 0);
         sum = rgb_add(sum, follow(eye, &way, &distance));
     }
     return rgb_scale(sum, 1.0f / FEW_RAYS);

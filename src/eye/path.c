@@ -128,7 +128,7 @@ static bool go_through(EyeThread *eye, Path *path, const Hit *hit, const Surface
     } else {
         take(path, s->filter, p);
         path->transmit *= rgb_grey(s->filter) / p;
-        path->inside = s->inside_after;
+        interiors_copy(&path->inside, &s->inside_after);
         path->is_shadowed = path->is_shadowed || stops_shadow_rays(eye, hit);
         if (path->diffuse > 0)
             path_weigh(path, rgb_gray((float)(s->ior_ratio * s->ior_ratio)));

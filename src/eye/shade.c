@@ -89,7 +89,7 @@ static void reflect_layer(EyeThread *eye, const Path *path, const SurfaceSample 
     mirrored.weight = weight;
     mirrored.is_straight = false;
     mirrored.is_mirrored = true;
-    mirrored.inside = path->inside;
+    interiors_copy(&mirrored.inside, &path->inside);
     mirrored.through = RGB_WHITE;
     mirrored.transmit = 1;
     Radiance seen;
@@ -120,7 +120,7 @@ static bool go_on(EyeThread *eye, Path *path, const SurfaceSample *s)
         path->transmit *= rgb_grey(s->filter);
         path->weight *= rgb_max_abs(s->filter);
         path->kind = path->is_mirrored ? RAY_REFLECTED : RAY_REFRACTED;
-        path->inside = s->inside_after;
+        interiors_copy(&path->inside, &s->inside_after);
     }
     path->through = rgb_mul(path->through, s->through);
     if (!may_trace(eye, path->level, path->weight))
@@ -252,11 +252,16 @@ static void radiance(EyeThread *eye, Path *path, Radiance *out, EyeSample *first
 void camera_radiance(EyeThread *eye, const Ray *ray, const Interiors *interiors, Radiance *out,
                      EyeSample *first)
 {
-    Path path = {.ray = *ray,
-                 .kind = RAY_CAMERA,
-                 .weight = 1,
-                 .inside = *interiors,
-                 .through = RGB_WHITE,
-                 .transmit = 1};
+    Path path;
+    path.ray = *ray;
+    path.from = NULL;
+    path.from_normal = v3(0, 0, 0);
+    path.kind = RAY_CAMERA;
+    path.level = 0;
+    path.weight = 1;
+    path.is_straight = path.is_mirrored = false;
+    interiors_copy(&path.inside, interiors);
+    path.through = RGB_WHITE;
+    path.transmit = 1;
     radiance(eye, &path, out, first);
 }

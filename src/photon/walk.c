@@ -240,15 +240,28 @@ static void keep(Walk *walk, const Hit *hit, float least, PhotonList *out, WalkR
 
 /* --- the way ---------------------------------------------------------------------------- */
 
-static void begin(Walk *walk)
+static void begin(Walk *walk, TraceThread *thread, const WalkRules *rules, const Beam *beam,
+                  const BeamRay *start, Rng *rng)
 {
-    walk->ray = walk->start->ray;
-    if (walk->beam->light)
-        walk->inside = walk->rules->inside[walk->beam->source];
+    walk->thread = thread;
+    walk->rules = rules;
+    walk->beam = beam;
+    walk->start = start;
+    walk->ray = start->ray;
+    if (beam->light)
+        interiors_copy(&walk->inside, &rules->inside[beam->source]);
     else
-        interiors_at(walk->thread->tracer, walk->ray.o, &walk->inside);
+        interiors_at(thread->tracer, walk->ray.o, &walk->inside);
+    walk->length = 0;
     walk->weight = RGB_WHITE;
-    walk->is_aimed = walk->beam->target == NULL;
+    walk->lost = walk->flux = RGB_BLACK;
+    walk->flux_length = -1;
+    walk->level = walk->diffuse = 0;
+    walk->is_aimed = beam->target == NULL;
+    walk->is_settled = walk->is_specular = walk->is_diffuse = walk->is_straight = false;
+    walk->has_chosen = walk->is_scout = false;
+    walk->index = 0;
+    walk->rng = rng;
 }
 
 /* Go on in direction d from a surface. */
@@ -263,7 +276,7 @@ static void pass_through(Walk *walk, const SurfaceSample *s)
 {
     weaken(walk, s->has_transmission ? not_negative(s->filter) : RGB_BLACK);
     if (s->has_transmission && !s->is_total_reflection)
-        walk->inside = s->inside_after;
+        interiors_copy(&walk->inside, &s->inside_after);
     leave(walk, s, walk->ray.d, true);
 }
 
@@ -295,7 +308,7 @@ static void transmit(Walk *walk, const SurfaceSample *s, Rgb share)
 {
     walk->weight = rgb_mul(walk->weight, share);
     if (!s->is_total_reflection)
-        walk->inside = s->inside_after;
+        interiors_copy(&walk->inside, &s->inside_after);
     leave(walk, s, s->transmit_dir, s->is_straight && !s->is_total_reflection);
     walk->is_specular = true;
 }
@@ -517,15 +530,10 @@ void photon_walk(TraceThread *thread, const WalkRules *rules, const Beam *beam,
                  const BeamRay *start, uint64_t index, float least, Rng *rng, PhotonList *out,
                  WalkResult *result)
 {
-    Walk walk = {.thread = thread,
-                 .rules = rules,
-                 .beam = beam,
-                 .start = start,
-                 .flux_length = -1,
-                 .index = index,
-                 .rng = rng};
+    Walk walk;
+    begin(&walk, thread, rules, beam, start, rng);
+    walk.index = index;
     *result = (WalkResult){.end = PATH_CUT};
-    begin(&walk);
     for (int surfaces = 0; surfaces < PATH_SURFACES_MAX; surfaces++) {
         Hit hit;
         SurfaceSample s;
@@ -556,15 +564,9 @@ void photon_walk(TraceThread *thread, const WalkRules *rules, const Beam *beam,
 Rgb photon_scout(TraceThread *thread, const WalkRules *rules, const Beam *beam,
                  const BeamRay *start, Rng *rng, V3 *at)
 {
-    Walk walk = {.thread = thread,
-                 .rules = rules,
-                 .beam = beam,
-                 .start = start,
-                 .flux_length = -1,
-                 .has_chosen = true,
-                 .is_scout = true,
-                 .rng = rng};
-    begin(&walk);
+    Walk walk;
+    begin(&walk, thread, rules, beam, start, rng);
+    walk.has_chosen = walk.is_scout = true;
     Rgb found = RGB_BLACK;
     WalkResult none;
     for (int surfaces = 0; surfaces < PATH_SURFACES_MAX; surfaces++) {

@@ -71,6 +71,16 @@ static void warn_of_missing(const Plan *plan, Diag *diag)
                   plan->unmet_lights, plan->unmet_lights == 1 ? "" : "s");
 }
 
+static void warn_of_crowds(const Stats *stats, Diag *diag)
+{
+    uint64_t count = stats->count[STAT_INTERIORS_CUT];
+    if (count > 0)
+        diag_warn(diag, WARN_RENDER, SPAN_NONE,
+                  "more than %d bodies lie over each other: the outermost did not count at %llu "
+                  "surfaces that rays met",
+                  INTERIORS_MAX, (unsigned long long)count);
+}
+
 Status render_scene(const Scene *scene, const RenderOptions *options, Diag *diag, RenderResult *out)
 {
     Tracer *tracer = NULL;
@@ -85,6 +95,8 @@ Status render_scene(const Scene *scene, const RenderOptions *options, Diag *diag
         status = progressive_render(tracer, options, started, diag, out);
     else if (status == OK)
         status = render_once(tracer, options, diag, out);
+    if (status == OK)
+        warn_of_crowds(&out->stats, diag);
     tracer_free(tracer);
     return status;
 }

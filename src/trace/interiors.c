@@ -13,6 +13,8 @@
 #include "math/eps.h"
 #include "math/spectrum.h"
 
+#include <string.h>
+
 /* Find the innermost entry of an object, preferring the same interior; -1: none. */
 static int entry_of(const Interiors *list, uint32_t object, const Interior *interior)
 {
@@ -46,8 +48,10 @@ static void drop(Interiors *list, int entry)
 /* Add an entry behind those of its priority.  When the list is full the outermost goes. */
 void interiors_enter(Interiors *list, const Interior *interior, uint32_t object)
 {
-    if (list->count == INTERIORS_MAX)
+    if (list->count == INTERIORS_MAX) {
         drop(list, 0);
+        list->is_cut = true;
+    }
     int at = list->count++;
     for (; at > 0 && list->in[at - 1]->priority > interior->priority; at--) {
         list->in[at] = list->in[at - 1];
@@ -63,17 +67,6 @@ bool interiors_leave(Interiors *list, const Interior *interior, uint32_t object)
     if (entry >= 0)
         drop(list, entry);
     return entry >= 0;
-}
-
-/* Copy the used part only. */
-static void copy(Interiors *to, const Interiors *from)
-{
-    to->count = from->count;
-    to->wavelength = from->wavelength;
-    for (int i = 0; i < from->count; i++) {
-        to->in[i] = from->in[i];
-        to->object[i] = from->object[i];
-    }
 }
 
 static double ior_of(const Interior *interior, double wavelength)
@@ -134,7 +127,7 @@ InteriorStep interiors_pass(const Tracer *tracer, const Passage *passages, int c
 {
     const Interior *from = innermost(before);
     bool is_entered[PASSAGES_MAX];
-    copy(after, before);
+    interiors_copy(after, before);
     for (int i = 0; i < count; i++)
         is_entered[i] = leave(tracer, &passages[i], after, &from);
     for (int i = 0; i < count; i++)
@@ -180,12 +173,27 @@ static bool is_around(const Interior *a, double a_volume, const Interior *b, dou
     return a->priority != b->priority ? a->priority < b->priority : a_volume > b_volume;
 }
 
+/* Make room in a full list for an interior: the outermost goes.  False: it is that itself. */
+static bool make_room(Interiors *list, double volumes[INTERIORS_MAX], const Interior *interior,
+                      double size)
+{
+    if (list->count < INTERIORS_MAX)
+        return true;
+    list->is_cut = true;
+    if (is_around(interior, size, list->in[0], volumes[0]))
+        return false;
+    drop(list, 0);
+    memmove(volumes, volumes + 1, (INTERIORS_MAX - 1) * sizeof *volumes);
+    return true;
+}
+
 void interiors_at(const Tracer *tracer, V3 p, Interiors *out)
 {
     double volumes[INTERIORS_MAX];
     out->count = 0;
     out->wavelength = 0;
-    for (uint32_t k = 0; k < tracer->clear_count && out->count < INTERIORS_MAX; k++) {
+    out->is_cut = false;
+    for (uint32_t k = 0; k < tracer->clear_count; k++) {
         uint32_t i = tracer->clear[k];
         const Object *object = &tracer->scene->objects[i];
         if (!shape_is_inside(object->shape, p))
@@ -193,6 +201,8 @@ void interiors_at(const Tracer *tracer, V3 p, Interiors *out)
         const Shape *leaf = leaf_around(object->shape, p);
         const Interior *interior = tracer->scene->surfaces[leaf->surface].interior;
         double size = volume(object);
+        if (!make_room(out, volumes, interior, size))
+            continue;
         int at = out->count++;
         for (; at > 0 && is_around(interior, size, out->in[at - 1], volumes[at - 1]); at--) {
             volumes[at] = volumes[at - 1];

@@ -229,7 +229,7 @@ static void set_total_reflection(Sampling *s)
     SurfaceSample *out = s->out;
     out->is_total_reflection = true;
     out->transmit_dir = mirror_of(s);
-    out->inside_after = *s->interiors;
+    interiors_copy(&out->inside_after, s->interiors);
     /* The reflection at this normal is this one: it counts once. */
     for (int i = 0; i < out->layer_count; i++)
         out->layers[i].reflect = RGB_BLACK;
@@ -289,7 +289,8 @@ static void disperse(TraceThread *thread, Sampling *s)
     out->filter = RGB_BLACK;
     for (int i = 0; i < out->layer_count; i++)
         out->layers[i].reflect = RGB_BLACK;
-    Interiors interiors = *s->interiors;
+    Interiors interiors;
+    interiors_copy(&interiors, s->interiors);
     int looked_at = bands < MEAN_BANDS_MAX ? bands : MEAN_BANDS_MAX;
     for (int i = 0; i < looked_at; i++) {
         SpectrumBand band = spectrum_band(i, looked_at);
@@ -331,8 +332,10 @@ void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit, const I
     if (hit->tie_count > 0)
         sample_ties(&s);
     out->has_transmission = fabsf(rgb_grey(out->filter)) > (float)out->settings->adc_bailout;
-    if (out->has_transmission)
+    if (out->has_transmission) {
         sample_transmission(&s);
+        thread->stats.count[STAT_INTERIORS_CUT] += out->inside_after.is_cut;
+    }
     out->spectrum = 0;
     if (tracer->has_dispersion && interiors->wavelength == 0)
         disperse(thread, &s);

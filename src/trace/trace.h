@@ -11,6 +11,8 @@
 #include "plan/plan.h"
 #include "scene/scene.h"
 
+#include <string.h>
+
 typedef struct Tracer Tracer; /* scene, plan and ray index; const while rays are traced */
 
 /* Build the ray index.  scene and plan are borrowed.  Free with tracer_free. */
@@ -90,14 +92,31 @@ Ray trace_ray_from(const ShapePoint *point, V3 d);
 
 /* The interiors a ray is inside of.  The last is what it is in: of those with the highest priority
  * the one entered last. */
-enum { INTERIORS_MAX = 12 };
+enum { INTERIORS_MAX = 32 };
 typedef struct Interiors {
     int count;
     float wavelength; /* nm: of light that was dispersed; 0: all wavelengths together */
+    bool is_cut;      /* there were more: the outermost were left out */
     const Interior *in[INTERIORS_MAX];
     uint32_t
         object[INTERIORS_MAX]; /* the surface's object: entering and leaving are paired by it */
 } Interiors;
+
+/* Copy the part that is used; the first few always, as that is cheaper than to count them. */
+static inline void interiors_copy(Interiors *to, const Interiors *from)
+{
+    enum { FEW = 4 };
+    to->count = from->count;
+    to->wavelength = from->wavelength;
+    to->is_cut = from->is_cut;
+    memcpy(to->in, from->in, FEW * sizeof *to->in);
+    memcpy(to->object, from->object, FEW * sizeof *to->object);
+    if (from->count > FEW) {
+        size_t rest = (size_t)(from->count - FEW);
+        memcpy(to->in + FEW, from->in + FEW, rest * sizeof *to->in);
+        memcpy(to->object + FEW, from->object + FEW, rest * sizeof *to->object);
+    }
+}
 
 /* Fill `out` with the interiors that contain p (for a camera or light inside glass): those of
  * objects that let light through, by priority, then by size; where there are media, fog or rainbows

@@ -49,6 +49,20 @@ for text in 'sphere { 0, -1 pigment { rgb 1 } }' 'triangle { 0, 0, x }' 'sphere 
     ok $? "accepted with a warning: $text"
 done
 
+# nest COUNT: glass balls in each other
+nest() {
+    printf 'camera { location -9*z } light_source { 9, 1 }\n'
+    printf '#declare I = 0; #while (I < %d) sphere { 0, 1 + 0.05*I pigment { rgbt 1 }' "$1"
+    printf ' interior { ior 1.1 } } #declare I = I + 1; #end\n'
+}
+for count in 30 40; do
+    nest $count >"$T/nest.pms"
+    run "$PMS" "$T/nest.pms" -w 16 --height 16 -o "$T/nest.png"
+    warnings=$(grep -c "warning: more than 32 bodies" "$T/err")
+    [ "$code" -eq 0 ] && [ "$warnings" -eq $((count > 32)) ]
+    ok $? "$count bodies in each other: $warnings warnings"
+done
+
 scene good 'camera { location -5*z } light_source { 9, 1 } sphere { 0, 1 pigment { rgb 1 } }'
 (ulimit -f 0; "$PMS" "$T/good.pms" -w 64 --height 64 -o "$T/full.exr" 2>"$T/err")
 code=$?

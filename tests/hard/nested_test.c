@@ -459,6 +459,65 @@ static void test_the_eye_inside(void **state)
     world_done(&w);
 }
 
+/* --- many bodies over each other -------------------------------------------------------------- */
+
+/* Shells from the innermost out, so that the list has to be put in order; `ior` grows inwards. */
+static void add_shells(World *w, Interior *interiors, int count)
+{
+    for (int i = 0; i < count; i++) {
+        interiors[i] = (Interior){.ior = 1.5 - 0.01 * i};
+        world_add(w, shape_sphere(w->scene.arena, v3(0, 0, 0), 1 + 0.1 * i), clear(w),
+                  &interiors[i]);
+    }
+    world_ready(w);
+}
+
+/* Walk straight through the middle of all shells; returns the legs on which the last of the list is
+ * not the shell that the leg is in. */
+static int wrong_on_the_way(World *w, const Interior *interiors, int count)
+{
+    int wrong = 0;
+    Ray ray = {v3(0, 0, -20), v3(0, 0, 1), 0, INFINITY};
+    Interiors inside = {.count = 0};
+    Hit hit;
+    for (int i = 1; trace_closest(&w->thread, &ray, RAY_CAMERA, &hit); i++) {
+        SurfaceSample s;
+        surface_sample(&w->thread, &ray, &hit, &inside, &s);
+        interiors_copy(&inside, &s.inside_after);
+        int shell = i <= count ? count - i : i - count;
+        const Interior *last = inside.count > 0 ? inside.in[inside.count - 1] : NULL;
+        wrong += last != (shell < count ? &interiors[shell] : NULL);
+        ray = trace_ray_from(&s.at, ray.d);
+    }
+    return wrong;
+}
+
+/* A ray knows as many bodies as fit its list, whether it enters them or begins in them; of more it
+ * leaves out the outermost, and says so. */
+static void test_many_bodies_in_one_place(void **state)
+{
+    (void)state;
+    const int counts[] = {1, 4, 5, 13, 20, INTERIORS_MAX, INTERIORS_MAX + 8};
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+        Interior interiors[INTERIORS_MAX + 8];
+        int count = counts[i], kept = count < INTERIORS_MAX ? count : INTERIORS_MAX;
+        World w;
+        world_init(&w);
+        add_shells(&w, interiors, count);
+        Interiors inside;
+        interiors_at(w.tracer, v3(0, 0, 0), &inside);
+        assert_int_equal(inside.count, kept);
+        assert_true(inside.is_cut == (count > kept));
+        for (int k = 0; k < kept; k++)
+            assert_ptr_equal(inside.in[k], &interiors[kept - 1 - k]);
+        int wrong = wrong_on_the_way(&w, interiors, count);
+        bool is_told = w.thread.stats.count[STAT_INTERIORS_CUT] > 0;
+        assert_true(is_told == (count > kept));
+        assert_true((wrong > 0) == (count > kept));
+        world_done(&w);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -472,6 +531,7 @@ int main(void)
         cmocka_unit_test(test_what_priority_hides),
         cmocka_unit_test(test_priority_is_the_same_both_ways),
         cmocka_unit_test(test_the_eye_inside),
+        cmocka_unit_test(test_many_bodies_in_one_place),
     };
     return cmocka_run_group_tests_name("nested", tests, NULL, NULL);
 }
