@@ -15,7 +15,7 @@ typedef struct Beam {
     int source;         /* whose books it is in: the light's number, or one after those */
     const Object *emitter; /* that glows; NULL (with no light): the sky */
     Bound box;             /* around what glows; for the sky, what it shines on */
-    bool is_outside_only;  /* the emitter's surfaces do not shine inward */
+    bool is_outside_only;  /* what the emitter's surfaces send inward comes to nothing seen */
     bool is_endless;       /* something outside of the box may stand before the sky */
     double brightness;     /* factor of what glows */
     double part_lit;       /* of its rays, those that carry light */

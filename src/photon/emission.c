@@ -120,15 +120,20 @@ static Bound glow_box(const Emission *emission, Bound bound)
                            (Bound){v3_sub(rules->center, half), v3_add(rules->center, half)});
 }
 
-/* Return whether some surface of an object lights others. */
-static void find_glowing(const Emission *emission, bool *is_glowing)
+/* What an object's surfaces do: some light others; what is inside shows outside, diffusely. */
+typedef struct Glow {
+    bool is_glowing, shows_back;
+} Glow;
+
+static void find_glowing(const Emission *emission, Glow *glows)
 {
     const Scene *scene = tracer_scene(emission->tracer);
     const Plan *plan = tracer_plan(emission->tracer);
     for (uint32_t i = 0; i < scene->surface_count; i++) {
         const Surface *s = &scene->surfaces[i];
+        glows[s->object].shows_back |= s->may_show_back;
         if (!s->no_radiosity && !scene->objects[s->object].no_shadow && plan_surface_glows(plan, s))
-            is_glowing[s->object] = true;
+            glows[s->object].is_glowing = true;
     }
 }
 
@@ -151,15 +156,15 @@ static bool add_glow_beam(Emission *emission, size_t *capacity, Beam *beam, Boun
     return add_beam(emission, capacity, beam);
 }
 
-static bool add_object_beams(Emission *emission, size_t *capacity, const bool *is_glowing)
+static bool add_object_beams(Emission *emission, size_t *capacity, const Glow *glows)
 {
     const Scene *scene = tracer_scene(emission->tracer);
     for (uint32_t i = 0; i < scene->object_count; i++) {
         const Object *object = &scene->objects[i];
         Beam beam = {.emitter = object};
-        if (!is_glowing[i])
+        if (!glows[i].is_glowing)
             continue;
-        beam.is_outside_only = tracer_is_opaque_solid(emission->tracer, i);
+        beam.is_outside_only = !glows[i].shows_back && tracer_is_opaque_solid(emission->tracer, i);
         if (!add_glow_beam(emission, capacity, &beam, object->bound, object->name))
             return false;
     }
@@ -182,15 +187,15 @@ static Status add_glow(Emission *emission, size_t *capacity)
 {
     const Scene *scene = tracer_scene(emission->tracer);
     const Plan *plan = tracer_plan(emission->tracer);
-    bool *is_glowing = mem_array((size_t)scene->object_count + 1, sizeof *is_glowing);
-    bool is_good = is_glowing != NULL;
+    Glow *glows = mem_array((size_t)scene->object_count + 1, sizeof *glows);
+    bool is_good = glows != NULL;
     if (is_good && plan_has(plan, FEATURE_GLOW)) {
-        find_glowing(emission, is_glowing);
-        is_good = add_object_beams(emission, capacity, is_glowing);
+        find_glowing(emission, glows);
+        is_good = add_object_beams(emission, capacity, glows);
     }
     if (is_good && plan_has(plan, FEATURE_SKY_LIGHT))
         is_good = add_sky_beam(emission, capacity);
-    mem_free(is_glowing);
+    mem_free(glows);
     return is_good ? OK : diag_no_memory(emission->diag, "photon beams");
 }
 

@@ -254,6 +254,7 @@ Status scene_check(Scene *scene, Diag *diag)
         s->may_transmit = surface_has(s, texture_may_transmit);
         s->may_reflect = surface_has(s, texture_may_reflect);
         s->is_matt = !s->may_transmit && !s->may_reflect && surface_has(s, texture_may_scatter);
+        s->may_show_back = s->is_double_illuminated || surface_has(s, texture_may_show_back);
         s->is_filter = only_filters(s);
         s->is_target = false;
     }

@@ -39,6 +39,8 @@ typedef struct Surface {
     bool may_transmit, may_reflect; /* some light passes / is reflected: set by scene_check */
     bool is_matt;                 /* all it does with light is to scatter it diffusely: set by
                                      scene_check */
+    bool may_show_back;           /* light on one side of it may show on the other, diffusely: set
+                                     by scene_check */
     bool is_filter;               /* what passes goes straight on and loses what the pigment takes,
                                      nothing else: set by scene_check */
     bool is_target;               /* photons are sent at it: set by scene_check */

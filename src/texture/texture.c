@@ -31,15 +31,27 @@ bool texture_may_transmit(const Texture *texture)
     return true;
 }
 
+static bool is_black(const Layer *layer)
+{
+    const Pigment *pigment = layer->pigment;
+    return pigment->is_solid && rgb_is_black(color5_rgb(pigment->color));
+}
+
 bool texture_may_scatter(const Texture *texture)
 {
     for (int i = 0; i < texture->layer_count; i++) {
-        const Pigment *pigment = texture->layers[i].pigment;
         const Finish *finish = texture->layers[i].finish;
-        bool is_black = pigment->is_solid && rgb_is_black(color5_rgb(pigment->color));
-        if (!is_black && (finish->diffuse > 0 || finish->diffuse_back > 0))
+        if (!is_black(&texture->layers[i]) && (finish->diffuse > 0 || finish->diffuse_back > 0))
             return true;
     }
+    return false;
+}
+
+bool texture_may_show_back(const Texture *texture)
+{
+    for (int i = 0; i < texture->layer_count; i++)
+        if (!is_black(&texture->layers[i]) && texture->layers[i].finish->diffuse_back > 0)
+            return true;
     return false;
 }
 

@@ -165,6 +165,9 @@ bool texture_may_reflect(const Texture *texture);
 /* Return true if some layer may scatter light diffusely: it is not black all over. */
 bool texture_may_scatter(const Texture *texture);
 
+/* Return true if some layer may let light through diffusely: by `diffuse a, b`. */
+bool texture_may_show_back(const Texture *texture);
+
 /* Return the index of refraction at a wavelength in nm; 0: of light as a whole. */
 double interior_ior(const Interior *interior, double wavelength);
 

@@ -454,6 +454,48 @@ static void paper_glows_on_both_sides(void **state)
     }
 }
 
+/* A ball of paper that glows on both sides, with an emission of e, in that white ball.  What its
+ * inside sends stays there but for what shows outside; both faces send photons, each once. */
+static void glowing_paper_lights_through_itself(void **state)
+{
+    (void)state;
+    const double a = 0.3, b = 0.5, e = 0.4, r = 0.5, returned = r / (4 - 3 * r);
+    const double outside = e * (1 + b / (1 - a)) / (1 - a * returned - b * b * returned / (1 - a));
+    char text[1024];
+    snprintf(text, sizeof text,
+             "#version 3.7;\n"
+             "global_settings { assumed_gamma 1 max_trace_level 200\n"
+             "  pms { gi on gi_method map global_photons 400000 } }\n"
+             "camera { location <1.5,0,0> look_at 0 right x up y angle 30 }\n"
+             "sphere { 0, 1 pigment { rgb 1 }\n"
+             "  finish { ambient 0 diffuse %g, %g emission %g } }\n"
+             "sphere { 0, 2 hollow pigment { rgb 1 } finish { ambient 0 diffuse %g } }\n",
+             a, b, e, r);
+    LitScene lit;
+    LitEye eye;
+    lit_make(&lit, text, 2, 3);
+    const LightBooks *books = &lit.maps.books.global[0];
+    double sent = (double)books->flux_emitted.g, faces = 2 * 4 * PMS_PI * e;
+    print_message("# sent %.4f of %.4f, balance %.5f +- %.5f\n", sent, faces,
+                  (double)books->balance.g, (double)books->balance_error.g);
+    assert_true(fabs(sent / faces - 1) < 0.01);
+    assert_true(fabs((double)books->balance.g - 1) < 4 * (double)books->balance_error.g + 1e-5);
+    assert_true(books->emitted ==
+                books->stored_paths + books->absorbed + books->escaped + books->cut);
+    lit_eye_open(&eye, &lit, lit_within(0.3));
+    double indirect = 0;
+    for (int k = 0; k < 64; k++) {
+        EyeSample seen = lit_look(&eye, (k % 8 + 0.5) / 8, (k / 8 + 0.5) / 8);
+        assert_true(fabs((double)seen.part[PART_DIRECT].g - e) < 1e-5);
+        indirect += (double)seen.part[PART_INDIRECT].g / 64;
+    }
+    lit_eye_close(&eye);
+    lit_done(&lit);
+    print_message("# indirect %.4f of %.4f\n", indirect, outside - e);
+    /* Each disk of 0.3 has some thousand photons of either side. */
+    assert_true(fabs(indirect / (outside - e) - 1) < 0.03);
+}
+
 /* --- thin solids ----------------------------------------------------------------------------- */
 
 /* Row S12: inside a slab that lets light through diffusely, and is far thinner than an estimate is
@@ -540,6 +582,7 @@ int main(void)
         cmocka_unit_test(flags_never_count_twice),
         cmocka_unit_test(the_eye_adds_three_parts),
         cmocka_unit_test(paper_glows_on_both_sides),
+        cmocka_unit_test(glowing_paper_lights_through_itself),
         cmocka_unit_test(thin_solids_keep_their_sides_apart),
         cmocka_unit_test(shadows_of_targets_are_dark_without_a_photon),
     };

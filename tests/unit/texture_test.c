@@ -105,6 +105,11 @@ static void test_may_transmit(void **state)
     const Layer few[] = {{&black, &dull}, {&matte, &dark}, {&ramp, &dull}};
     assert_false(texture_may_scatter(&(Texture){.layers = few, .layer_count = 2}));
     assert_true(texture_may_scatter(&(Texture){.layers = few, .layer_count = 3}));
+    Finish paper = dull;
+    paper.diffuse_back = 0.1f;
+    const Layer thin[] = {{&black, &paper}, {&matte, &dull}, {&ramp, &paper}};
+    assert_false(texture_may_show_back(&(Texture){.layers = thin, .layer_count = 2}));
+    assert_true(texture_may_show_back(&(Texture){.layers = thin, .layer_count = 3}));
 }
 
 static void test_fade(void **state)
