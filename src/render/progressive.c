@@ -25,6 +25,9 @@ enum { SERIES_RNG = 0x736572 };
 /* a, see above. */
 #define SERIES_ALPHA (2.0 / 3)
 
+/* From this pass on the product of the factors is had in closed form. */
+enum { SERIES_FAR = 4096 };
+
 /* The picture so far is shown after passes 1, 2, 4, 8 ... and when it has not been for so long, or
  * so many times as long as showing it takes. */
 #define SHOW_SECONDS 5
@@ -38,9 +41,8 @@ typedef struct Series {
     RenderResult *out;
     Film film;
     FilmSum sum;
-    PassRadii first;       /* gather radii of the first pass */
-    double shrink2;        /* square of the radius of the next pass over that of the first */
-    uint64_t passes_asked; /* stop after so many */
+    PassRadii first;                /* gather radii of the first pass */
+    uint64_t passes_asked;          /* stop after so many */
     double started, passes_started; /* seconds of clock_wall */
     double last_shown, show_cost;
     uint64_t last_shown_pass;
@@ -49,17 +51,22 @@ typedef struct Series {
 
 /* --- radii ---------------------------------------------------------------------------------- */
 
-/* Return the squared radius of the pass after `passes` over that of the one before it. */
-static double shrink_after(uint64_t passes)
+/* The product of (i + a) / (i + 1) goes as v^(a-1) (1 - a (1-a) (2-a) / (24 v^2) + ...), where
+ * v = pass + a/2; the next term is below the rounding from SERIES_FAR on. */
+static double far_product(uint64_t pass)
 {
-    return ((double)passes + SERIES_ALPHA) / ((double)passes + 1);
+    const double a = SERIES_ALPHA;
+    double v = (double)pass + a / 2;
+    return pow(v, a - 1) * exp(-a * (1 - a) * (2 - a) / (24 * v * v));
 }
 
 double progressive_shrink(uint64_t pass)
 {
     double shrink2 = 1;
-    for (uint64_t i = 1; i < pass; i++)
-        shrink2 *= shrink_after(i);
+    for (uint64_t i = 1; i < pass && i < SERIES_FAR; i++)
+        shrink2 *= ((double)i + SERIES_ALPHA) / ((double)i + 1);
+    if (pass > SERIES_FAR)
+        shrink2 *= far_product(pass) / far_product(SERIES_FAR);
     return sqrt(shrink2);
 }
 
@@ -177,7 +184,7 @@ static Status run_pass(Series *s)
     PassResult result;
     Rng seed = rng_at(s->options.seed, SERIES_RNG, number);
     PassSeries series = {.first_sample = (uint32_t)number * (uint32_t)s->options.samples,
-                         .shrink = sqrt(s->shrink2),
+                         .shrink = progressive_shrink(number + 1),
                          .is_repeat = s->out->new_passes > 0,
                          .first = &s->first};
     PassOptions pass = {&s->options, rng_u64(&seed), &series};
@@ -190,7 +197,6 @@ static Status run_pass(Series *s)
     s->out->last_radii = scaled(s->first, series.shrink);
     s->out->new_passes++;
     s->out->stats.count[STAT_PIXELS] = (uint64_t)s->film.width * (uint64_t)s->film.height;
-    s->shrink2 *= shrink_after(s->sum.passes);
     pass_result_done(&result);
     return OK;
 }
@@ -242,8 +248,6 @@ static Status resume(Series *s)
         diag_warn(s->diag, WARN_FILE, SPAN_NONE,
                   "there is no '%s' to resume from: starting with the first pass",
                   progressive->state_path);
-    for (uint64_t i = 1; i <= s->sum.passes; i++)
-        s->shrink2 *= shrink_after(i);
     s->last_shown_pass = s->sum.passes;
     s->out->last_radii = scaled(s->first, progressive_shrink(s->sum.passes));
     if (s->sum.passes > s->passes_asked)
@@ -286,7 +290,6 @@ Status progressive_render(const Tracer *tracer, const RenderOptions *options, do
                 .options = *options,
                 .diag = diag,
                 .out = out,
-                .shrink2 = 1,
                 .started = started};
     set_options(&s);
     Status status = run_series(&s);

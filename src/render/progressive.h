@@ -11,7 +11,7 @@
 Status progressive_render(const Tracer *tracer, const RenderOptions *options, double started,
                           Diag *diag, RenderResult *out);
 
-/* Return the gather radius of a pass, counted from 1, over that of the first.  O(pass). */
+/* Return the gather radius of a pass, counted from 1, over that of the first. */
 double progressive_shrink(uint64_t pass);
 
 #endif

@@ -186,6 +186,14 @@ static void radii_shrink_by_the_rule(void **state)
         double square = progressive_shrink(n) * progressive_shrink(n);
         assert_true(fabs(square / expected - 1) < 1e-9);
     }
+    /* Far off by the first term of its expansion, at once; near the seam by the factors. */
+    double far = progressive_shrink(UINT32_MAX);
+    double expected = pow((double)UINT32_MAX + a / 2, (a - 1) / 2) / sqrt(tgamma(1 + a));
+    assert_true(fabs(far / expected - 1) < 1e-12);
+    for (uint64_t n = 4000; n < 4200; n++) {
+        double step = progressive_shrink(n + 1) / progressive_shrink(n), x = (double)n;
+        assert_true(fabs(step - sqrt((x + a) / (x + 1))) < 1e-14);
+    }
     Run run = passes(EVERYTHING, 5);
     double ratio = run.result.last_radii.caustic / run.result.first_radii.caustic;
     assert_true(fabs(ratio / progressive_shrink(5) - 1) < 1e-12);
