@@ -93,24 +93,25 @@ static Rgb lane_power(const PhotonBlock *block, int i)
 }
 
 /* Return the light that one of a block's photons gives a ray, times the area it is spread over: the
- * mean of a few. */
+ * mean of a few, all in the media of the first. */
 static double light_of_photon(const Tracer *tracer, const PhotonMap *map, const PhotonBlock *block)
 {
     Rgb sum = RGB_BLACK;
+    MediaHere here;
     int count = 0;
     for (int i = 0; i < BLOCK_PHOTONS; i += BLOCK_PHOTONS / TRIED_PHOTONS) {
         V3 at = v3((double)block->pos[0][i], (double)block->pos[1][i], (double)block->pos[2][i]);
         if (!v3_is_finite(at))
             continue;
         V3 p = v3_add(map->center, at);
-        Interiors inside;
-        MediaHere here;
         MediaPoint point;
-        interiors_at(tracer, p, &inside);
-        media_here(tracer, &inside, &here);
+        if (count++ == 0) {
+            Interiors inside;
+            interiors_at(tracer, p, &inside);
+            media_here(tracer, &inside, &here);
+        }
         media_at(&here, p, &point);
         sum = rgb_add(sum, rgb_mul(point.scattering, lane_power(block, i)));
-        count++;
     }
     return count > 0 ? (double)rgb_max(sum) / count : 0;
 }
