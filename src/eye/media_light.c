@@ -1,56 +1,31 @@
 /* Light that media scatter once, from the lights to the eye.
  *
  * Along a ray the light that would arrive without shadows is cheap and smooth: it is summed up
- * over places spread by what passes the media and by the angle the light is seen under, as finely
- * as the rule that sums it needs.  What costs is the shadow rays.  They are sent from places spread
- * evenly over that light, few at first, and more only where neighbours differ by what can be seen.
- * SPDX-License-Identifier: Apache-2.0 */
+ * first (light_run.h).  What costs is the shadow rays.  Of a light without size it is known for
+ * most of a ray, without any, whether it arrives; where it is not, places spread evenly over the
+ * light are looked at.  Where nothing is known these are few at first, and more only where
+ * neighbours differ by what can be seen.  SPDX-License-Identifier: Apache-2.0 */
 #include "eye/air_int.h"
+#include "eye/light_run.h"
 
 enum {
-    PIECES_MAX = 2 * MEDIA_CELLS_MAX, /* of the light along a ray */
-    HALVINGS_MAX = 10,                /* of a piece */
-    CELLS_SMALL = 32,                 /* more cells than these are small enough as they are */
-    BREAKS_BY_ANGLE = 6,
     PLACES_FIRST_MAX = 64,
     PLACES_MAX = 256 /* shadow rays to one light for one ray */
 };
 
-/* Pieces of the light are halved until the rules that sum them differ by less than this part of
- * what is known of the whole, or of the tolerance: what they are wrong by is far below that. */
-#define PIECE_ERROR 1e-3f
-#define PIECE_TOLERANCE 0.05f
+/* What sums of light without shadows may be wrong by, in parts of the tolerance. */
+#define SUM_TOLERANCE 0.1f
 
-/* Places in a part of a cell that is thinner than this are even. */
-#define THIN_DEPTH 0.25
+/* Light that is less than this part of the tolerance is not asked for shadows: half of it counts.
+ */
+#define OPEN_TOLERANCE 0.5f
 
-/* Places in a part of a cell, counted by how much of what comes from there passes it (in the
- * channel that goes furthest): v from 0 to 1. */
-typedef struct Warp {
-    const MediaCell *cell;
-    double begin, length; /* t */
-    double x;             /* extinction */
-    double lost;          /* part that does not pass; 0: little, v is even in t */
-} Warp;
+/* With less than this part of the light open, shadows are known well: places that differ are then
+ * at edges that need not be looked for. */
+#define OPEN_LITTLE 0.5f
 
 /* Between two places whose shadows differ by more than this, over the channels, is an edge. */
 #define END_STEP 0.75f
-
-/* A piece of the light along a ray, without shadows. */
-typedef struct Piece {
-    Warp warp;
-    double low, high; /* v */
-    double skew;      /* share of its begin in the light of begin and end; even between them */
-    Rgb sum;          /* light up to its end */
-    double part;      /* the same as a part of the whole, over the channels */
-} Piece;
-
-/* The light along a ray, in order from its begin. */
-typedef struct LightRun {
-    int count;
-    Rgb whole;
-    Piece pieces[PIECES_MAX];
-} LightRun;
 
 /* What a shadow ray found, for a stretch of the light of a run. */
 typedef struct LightPlace {
@@ -65,175 +40,12 @@ typedef struct Scatter {
     const Ray *ray;
     const EyeLight *light;
     MediaCare care;
-    float enough; /* a piece need not be known better than this */
-    LightRun run;
+    LightRun all;        /* the light without shadows */
+    LightRun open;       /* of that, what it is not known of whether it arrives */
+    const LightRun *run; /* the one of both that is looked at */
     int count;
     LightPlace places[PLACES_MAX];
 } Scatter;
-
-/* --- the light without shadows ------------------------------------------------------------ */
-
-static Warp make_warp(const MediaCell *cell, double begin, double end)
-{
-    Warp warp = {.cell = cell, .begin = begin, .length = end - begin};
-    warp.x = (double)rgb_min(cell->point.extinction);
-    warp.lost = warp.x * warp.length > THIN_DEPTH ? -expm1(-warp.x * warp.length) : 0;
-    return warp;
-}
-
-static double warp_t(const Warp *warp, double v)
-{
-    if (warp->lost == 0)
-        return warp->begin + v * warp->length;
-    return warp->begin + fmin(warp->length, -log1p(-v * warp->lost) / warp->x);
-}
-
-static double warp_v(const Warp *warp, double t)
-{
-    double way = t - warp->begin;
-    return warp->lost == 0 ? way / warp->length : -expm1(-warp->x * way) / warp->lost;
-}
-
-/* Light per unit of v at a place. */
-static Rgb light_here(const Scatter *s, const Warp *warp, double v)
-{
-    double t = warp_t(warp, v);
-    const MediaCell *cell = warp->cell;
-    const Light *light = s->light->light;
-    LightSample sample = light_at(light, light->location, ray_at(s->ray, t));
-    if (rgb_is_black(sample.color))
-        return RGB_BLACK;
-    V3 p = ray_at(s->ray, cell->at);
-    Rgb scattered = media_scattered(&s->lobes, p, v3_dot(sample.to_light, s->ray->d));
-    /* What passes up to here, over the part of it that v stands for. */
-    Rgb x = cell->point.extinction;
-    float way = (float)(t - warp->begin), rest = warp->lost == 0 ? 0 : (float)warp->x;
-    Rgb depth = rgb_mad(cell->depth, (float)(warp->begin - cell->begin), x);
-    depth = rgb_add(depth, rgb((x.r - rest) * way, (x.g - rest) * way, (x.b - rest) * way));
-    double measure = warp->lost == 0 ? warp->length : warp->lost / warp->x;
-    return rgb_scale(rgb_mul(rgb_mul(scattered, sample.color), media_clear(depth)), (float)measure);
-}
-
-static void add_piece(Scatter *s, const Warp *warp, double low, double high, double skew, Rgb light)
-{
-    LightRun *run = &s->run;
-    if (run->count == PIECES_MAX)
-        return;
-    run->whole = rgb_add(run->whole, light);
-    run->pieces[run->count++] =
-        (Piece){.warp = *warp, .low = low, .high = high, .skew = skew, .sum = run->whole};
-}
-
-/* Sum up the light between two values of v by Simpson's rule, halving where that differs from the
- * rule of trapezes. */
-static void sum_light(Scatter *s, const Warp *warp, double low, Rgb first, double high, Rgb last,
-                      int halvings)
-{
-    double middle = 0.5 * (low + high);
-    Rgb between = light_here(s, warp, middle), ends = rgb_add(first, last);
-    float width = (float)(high - low);
-    Rgb simpson = rgb_scale(rgb_mad(ends, 4, between), width / 6);
-    Rgb trapeze = rgb_scale(rgb_mad(ends, 2, between), width / 4);
-    float error = rgb_sum_abs(rgb_sub(simpson, trapeze));
-    float limit = fmaxf(s->enough, PIECE_ERROR * rgb_sum_abs(s->run.whole));
-    if (error <= limit || halvings == 0 || s->run.count > PIECES_MAX / 2) {
-        float all = rgb_sum(ends);
-        add_piece(s, warp, low, high, all > 0 ? (double)(rgb_sum(first) / all) : 0.5, simpson);
-        return;
-    }
-    sum_light(s, warp, low, first, middle, between, halvings - 1);
-    sum_light(s, warp, middle, between, high, last, halvings - 1);
-}
-
-/* Places at equal steps of the angle under which the light is seen. */
-static int breaks_by_angle(const Light *light, const Ray *ray, double begin, double end, double *t)
-{
-    double nearest = v3_dot(v3_sub(light->location, ray->o), ray->d);
-    double away = v3_dist(light->location, ray_at(ray, nearest));
-    away = fmax(away, 1e-6 * (fabs(nearest) + away));
-    if (light_is_parallel(light) || !(away > 0))
-        return 0;
-    double low = atan2(begin - nearest, away), high = atan2(end - nearest, away);
-    for (int i = 0; i < BREAKS_BY_ANGLE; i++)
-        t[i] = nearest + away * tan(low + (high - low) * (i + 1) / (BREAKS_BY_ANGLE + 1));
-    return BREAKS_BY_ANGLE;
-}
-
-/* Sum up the light of a part of a cell. */
-static void add_cell(Scatter *s, const MediaCell *cell, double begin, double end,
-                     const double *breaks, int break_count)
-{
-    if (!(end > begin) || rgb_is_black(cell->point.scattering))
-        return;
-    Warp warp = make_warp(cell, begin, end);
-    if (s->profile->count > CELLS_SMALL) {
-        add_piece(s, &warp, 0, 1, 0.5, light_here(s, &warp, 0.5));
-        return;
-    }
-    double low = 0;
-    Rgb first = light_here(s, &warp, 0);
-    for (int i = 0; i <= break_count; i++) {
-        double high = i < break_count ? warp_v(&warp, breaks[i]) : 1;
-        if (!(high > low && high <= 1))
-            continue;
-        Rgb last = light_here(s, &warp, high);
-        sum_light(s, &warp, low, first, high, last, HALVINGS_MAX);
-        low = high;
-        first = last;
-    }
-}
-
-/* Returns false when there is no light at all. */
-static bool fill_run(Scatter *s, double begin, double end)
-{
-    double breaks[BREAKS_BY_ANGLE];
-    int count = breaks_by_angle(s->light->light, s->ray, begin, end, breaks);
-    LightRun *run = &s->run;
-    run->count = 0;
-    run->whole = RGB_BLACK;
-    for (int i = 0; i < s->profile->count; i++) {
-        const MediaCell *cell = &s->profile->cells[i];
-        add_cell(s, cell, fmax(begin, cell->begin), fmin(end, cell->end), breaks, count);
-    }
-    double all = (double)rgb_sum(run->whole);
-    for (int i = 0; i < run->count; i++)
-        run->pieces[i].part = i + 1 < run->count ? (double)rgb_sum(run->pieces[i].sum) / all : 1;
-    return all > 0 && isfinite(all);
-}
-
-/* Return the piece in which a part of the light ends, and where in it (0 to 1). */
-static const Piece *run_piece(const LightRun *run, double part, double *inside)
-{
-    int low = 0, high = run->count - 1;
-    while (low < high) {
-        int middle = (low + high) / 2;
-        if (run->pieces[middle].part <= part)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    double before = low > 0 ? run->pieces[low - 1].part : 0;
-    double width = run->pieces[low].part - before;
-    *inside = width > 0 ? fmin(1, (part - before) / width) : 0.5;
-    return &run->pieces[low];
-}
-
-static Rgb run_light(const LightRun *run, double part)
-{
-    double inside;
-    const Piece *piece = run_piece(run, part, &inside);
-    Rgb before = piece > run->pieces ? piece[-1].sum : RGB_BLACK;
-    return rgb_lerp(before, piece->sum, (float)inside);
-}
-
-static double run_t(const LightRun *run, double part)
-{
-    double inside;
-    const Piece *piece = run_piece(run, part, &inside);
-    double skew = piece->skew, way = skew + sqrt(skew * skew + (1 - 2 * skew) * inside);
-    double share = way > 0 ? fmin(1, inside / way) : 0;
-    return warp_t(&piece->warp, piece->low + (piece->high - piece->low) * share);
-}
 
 /* --- shadows ------------------------------------------------------------------------------ */
 
@@ -260,13 +72,13 @@ static Rgb look_at_light(const Scatter *s, double t)
 static LightPlace make_place(const Scatter *s, double begin, double end, double u)
 {
     LightPlace place = {.begin = begin, .end = end, .at = begin + (end - begin) * u};
-    place.arrived = look_at_light(s, run_t(&s->run, place.at));
+    place.arrived = look_at_light(s, light_run_t(s->run, place.at));
     return place;
 }
 
 static float whole_difference(const Scatter *s, const LightPlace *a, const LightPlace *b)
 {
-    Rgb d = rgb_mul(rgb_sub(a->arrived, b->arrived), s->run.whole);
+    Rgb d = rgb_mul(rgb_sub(a->arrived, b->arrived), s->run->whole);
     return rgb_sum_abs(d);
 }
 
@@ -310,7 +122,7 @@ static bool refine(Scatter *s)
  * unless the light is too dim to matter. */
 static int first_places(const Scatter *s)
 {
-    float most = rgb_max(s->run.whole);
+    float most = rgb_max(s->run->whole);
     int asked = most > s->care.threshold ? s->care.cells : most > s->care.tolerance ? 2 : 1;
     float needed = ceilf(most / (4 * s->care.tolerance));
     int places = needed < PLACES_FIRST_MAX ? (int)needed : PLACES_FIRST_MAX;
@@ -339,12 +151,12 @@ static Rgb join_places(const Scatter *s)
 {
     const LightPlace *first = s->places, *last = s->places + s->count - 1;
     if (first == last)
-        return rgb_mul(s->run.whole, first->arrived);
+        return rgb_mul(s->run->whole, first->arrived);
     Rgb sum = RGB_BLACK, before = RGB_BLACK;
     Rgb arrived = arrived_at_end(first, first + 1, 0);
     for (const LightPlace *place = first; place <= last + 1; place++) {
         bool is_end = place > last;
-        Rgb after = is_end ? s->run.whole : run_light(&s->run, place->at);
+        Rgb after = is_end ? s->run->whole : light_run_light(s->run, place->at);
         Rgb next = is_end ? arrived_at_end(last, last - 1, 1) : place->arrived;
         Rgb mean = rgb_scale(rgb_add(arrived, next), 0.5f);
         sum = rgb_add(sum, rgb_mul(rgb_sub(after, before), mean));
@@ -354,16 +166,49 @@ static Rgb join_places(const Scatter *s)
     return sum;
 }
 
-static Rgb shadowed(Scatter *s)
+/* Look at places of a run; returns its light, as far as that arrives. */
+static Rgb shadowed(Scatter *s, const LightRun *run, bool looks_for_edges)
 {
+    s->run = run;
     int first = first_places(s);
     double u = rng_double(&s->eye->rng);
     s->count = 0;
     for (int i = 0; i < first; i++)
         s->places[s->count++] = make_place(s, (double)i / first, (i + 1.0) / first, u);
-    for (int level = 0; level < s->care.level && refine(s); level++)
+    for (int level = 0; looks_for_edges && level < s->care.level && refine(s); level++)
         ;
     return join_places(s);
+}
+
+/* What is known of shadows between begin and end; it does not tell how media dim the light. */
+static bool known_shadows(const Scatter *s, double begin, double end, LitStretches *out)
+{
+    const Light *light = s->light->light;
+    const Tracer *tracer = s->eye->trace.tracer;
+    if (!trace_lit_stretches(tracer, s->light->index, s->ray, begin, end, out))
+        return false;
+    if (light->is_dimmed_by_media || s->eye->trace.is_dimmed)
+        for (int i = 0; i < out->count; i++)
+            if (out->items[i].state == LIT_SURE)
+                out->items[i].state = LIT_UNSURE;
+    return true;
+}
+
+/* The light of a lamp between begin and end. */
+static Rgb lamp_light(Scatter *s, double begin, double end)
+{
+    const RunSource source = {s->profile, &s->lobes, s->ray, s->light->light,
+                              SUM_TOLERANCE * s->care.tolerance};
+    if (!light_run_sum(&source, begin, end, &s->all))
+        return RGB_BLACK;
+    LitStretches known;
+    if (!known_shadows(s, begin, end, &known))
+        return shadowed(s, &s->all, true);
+    Rgb sure = light_run_sort(&s->all, &known, &s->open);
+    if (!(rgb_sum(s->open.whole) > 0))
+        return sure;
+    bool is_little = rgb_sum(s->open.whole) < OPEN_LITTLE * rgb_sum(s->all.whole);
+    return rgb_add(sure, shadowed(s, &s->open, !is_little));
 }
 
 void media_scatter(EyeThread *eye, const MediaHere *here, const MediaProfile *profile,
@@ -379,14 +224,11 @@ void media_scatter(EyeThread *eye, const MediaHere *here, const MediaProfile *pr
     s.profile = profile;
     s.ray = ray;
     s.care = media_care(here);
-    s.enough = PIECE_TOLERANCE * s.care.tolerance;
     media_lobes(here, &s.lobes);
     for (int i = 0; i < eye->light_count; i++) {
         s.light = &eye->lights[i];
         double begin = profile->cells[0].begin, end = profile->cells[profile->count - 1].end;
-        if (!s.light->lights_media || !light_stretch(s.light->light, ray, &begin, &end) ||
-            !fill_run(&s, begin, end))
-            continue;
-        *light = rgb_add(*light, shadowed(&s));
+        if (s.light->lights_media && light_stretch(s.light->light, ray, &begin, &end))
+            *light = rgb_add(*light, lamp_light(&s, begin, end));
     }
 }

@@ -24,6 +24,16 @@ bool shape_is_convex_leaf(const Shape *shape)
     }
 }
 
+bool shape_is_convex(const Shape *shape)
+{
+    if (shape->kind != SHAPE_INTERSECTION)
+        return shape_is_convex_leaf(shape);
+    bool is_convex = !shape->is_inverted && shape->clip_count == 0;
+    for (int i = 0; i < shape->child_count && is_convex; i++)
+        is_convex = shape_is_convex(shape->children[i]);
+    return is_convex;
+}
+
 /* Take a hit as an end of the core if it is further in.  Ends whose errors overlap are one
  * event, which shows the child written first. */
 static void move_end(ConvexEnd *end, const Shape *leaf, const LeafHit *hit, int child, int way)

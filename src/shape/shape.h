@@ -224,4 +224,11 @@ V2 shape_uv(const Shape *leaf, uint32_t part, double u, double v, V3 p);
  * bound_is_finite). */
 Bound shape_bound(const Shape *shape);
 
+/* Return the point p of a primitive, not a plane or CSG, for which n . p is largest, up to
+ * rounding; of a mesh, a point of the box around it.  n need not be of unit length. */
+V3 shape_farthest(const Shape *leaf, V3 n);
+
+/* Return true if the shape is a solid that every line is inside of along one stretch at most. */
+bool shape_is_convex(const Shape *shape);
+
 #endif

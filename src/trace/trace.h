@@ -211,6 +211,30 @@ void trace_shadow_bundle(const Tracer *tracer, const ShapePoint *from, V3 to_cen
 Rgb trace_shadow_of(TraceThread *thread, const ShadowBundle *bundle, const ShapePoint *from, V3 to,
                     double distance, int light, bool blocks_targets);
 
+/* What is known of a light's shadows along a ray without sending shadow rays. */
+typedef enum LitState {
+    LIT_UNSURE,
+    LIT_SURE, /* nothing is between it and the light */
+    LIT_NOT   /* something opaque is */
+} LitState;
+
+typedef struct LitStretch {
+    double begin, end; /* t */
+    LitState state;
+} LitStretch;
+
+/* One follows on the other. */
+enum { LIT_STRETCHES_MAX = 64 };
+typedef struct LitStretches {
+    int count;
+    LitStretch items[LIT_STRETCHES_MAX];
+} LitStretches;
+
+/* Cut a ray from begin to end, finite, by what is known of light `light` (index).  Returns false
+ * if nothing is: that is kept for lights without size that media scatter. */
+bool trace_lit_stretches(const Tracer *tracer, int light, const Ray *ray, double begin, double end,
+                         LitStretches *out);
+
 /* Light arriving at a point from one light source, before any shadow. */
 typedef struct LightSample {
     V3 to_light;     /* unit */

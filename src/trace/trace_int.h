@@ -49,6 +49,7 @@ struct Tracer {
     BundleIndex *bundles;
     ViewIndex *camera_view;  /* NULL: none */
     ViewIndex **light_views; /* per light; NULL: none */
+    struct ShadowView **shadow_views; /* per light; NULL: none */
     Bound bound;
     bool has_dispersion;
     const Interior **light_interiors; /* per light: what it stands in, NULL: nothing that absorbs */

@@ -4,6 +4,7 @@
 
 #include "base/mem.h"
 #include "math/eps.h"
+#include "trace/shadow_view.h"
 
 #include <string.h>
 
@@ -175,6 +176,34 @@ static Status make_views(Tracer *tracer, const Bound *boxes, uint32_t count, Dia
     return is_complete ? OK : diag_no_memory(diag, "the views of eye and lights");
 }
 
+/* What is known of the shadows of lights without size that media scatter. */
+static Status make_shadow_views(Tracer *tracer, Diag *diag)
+{
+    const Scene *scene = tracer->scene;
+    if (!plan_has(tracer->plan, FEATURE_MEDIA) || !plan_has(tracer->plan, FEATURE_LIGHTS) ||
+        scene->object_count > VIEW_OBJECTS_MAX)
+        return OK;
+    for (int i = 0; i < scene->light_count && i < VIEW_LIGHTS_MAX; i++) {
+        const Light *light = &scene->lights[i];
+        if (!light->lights_media || light->is_shadowless || light->area.size1 > 0 ||
+            tracer->light_interiors[i])
+            continue;
+        tracer->shadow_views[i] = shadow_view_new(tracer, light);
+        if (!tracer->shadow_views[i])
+            return diag_no_memory(diag, "the shadows of lights");
+    }
+    return OK;
+}
+
+bool trace_lit_stretches(const Tracer *tracer, int light, const Ray *ray, double begin, double end,
+                         LitStretches *out)
+{
+    if (!tracer->shadow_views[light])
+        return false;
+    shadow_view_cut(tracer->shadow_views[light], ray, begin, end, out);
+    return true;
+}
+
 /* Sort the objects into those with a box and those without; an empty box is never met. */
 static Status index_objects(Tracer *tracer, int threads, Diag *diag)
 {
@@ -236,11 +265,12 @@ Status tracer_new(const Scene *scene, const Plan *plan, int threads, Diag *diag,
     tracer->objects = mem_array((size_t)scene->object_count + 1, sizeof *tracer->objects);
     tracer->clear = mem_array((size_t)scene->object_count + 1, sizeof *tracer->clear);
     tracer->light_views = mem_array((size_t)scene->light_count + 1, sizeof *tracer->light_views);
+    tracer->shadow_views = mem_array((size_t)scene->light_count + 1, sizeof *tracer->shadow_views);
     tracer->media = mem_array((size_t)scene->object_count + 1, sizeof *tracer->media);
     tracer->light_interiors =
         mem_array((size_t)scene->light_count + 1, sizeof *tracer->light_interiors);
     if (!tracer->objects || !tracer->clear || !tracer->media || !tracer->light_views ||
-        !tracer->light_interiors) {
+        !tracer->light_interiors || !tracer->shadow_views) {
         tracer_free(tracer);
         return diag_no_memory(diag, "the tracer");
     }
@@ -252,6 +282,8 @@ Status tracer_new(const Scene *scene, const Plan *plan, int threads, Diag *diag,
     if (bound_is_empty(tracer->bound))
         tracer->bound = (Bound){{0, 0, 0}, {0, 0, 0}};
     Status status = index_objects(tracer, threads, diag);
+    if (status == OK)
+        status = make_shadow_views(tracer, diag);
     if (status == OK) {
         tracer->bundles = bundle_index_new(tracer->objects, scene->object_count);
         status = tracer->bundles ? OK : diag_no_memory(diag, "the tracer");
@@ -274,6 +306,9 @@ void tracer_free(Tracer *tracer)
     for (int i = 0; tracer->light_views && i < tracer->scene->light_count; i++)
         view_index_free(tracer->light_views[i]);
     mem_free(tracer->light_views);
+    for (int i = 0; tracer->shadow_views && i < tracer->scene->light_count; i++)
+        shadow_view_free(tracer->shadow_views[i]);
+    mem_free(tracer->shadow_views);
     mem_free(tracer->light_interiors);
     mem_free(tracer->index_objects);
     mem_free(tracer->unbounded);

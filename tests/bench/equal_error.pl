@@ -140,7 +140,7 @@ sub caustic {
 # agree is printed.  The first line of povray is its default setting.
 sub smoke {
     my $scene = {name => 'smoke', width => 160, height => 120};
-    my @points = map { {Variance => $_} } (1 / 16, 1 / 32, 1 / 128, 1 / 512, 1 / 2048);
+    my @points = map { {Variance => $_} } (1, 1 / 16, 1 / 128, 1 / 512, 1 / 2048);
     pms($scene, 'truth.exr', 99,
         {Samples => 3000, Variance => 1e-8, Threshold => 1e-4, Level => 10}, '-A');
     my @povray;
@@ -168,9 +168,11 @@ sub smoke {
         print "\n";
     }
     return if !@povray;
+    # No coarser setting than the first is known: no error above its own is read off the line.
     my ($seconds, $error) = @{$povray[0]};
-    my $time = time_at($error, @known);
-    printf "  povray as it is by default: %.3f s, rmse %.4f; pms for that error %.3f s:"
+    my ($least, $coarsest) = @{$known[0]};
+    my $time = $coarsest < $error ? $least : time_at($error, @known);
+    printf "  povray as it is by default: %.3f s, rmse %.4f; pms for that error or less %.3f s:"
         . " %.1f times less (reach 5)\n", $seconds, $error, $time, $seconds / $time;
 }
 

@@ -192,10 +192,55 @@ static void balls_beside_and_behind_are_missed(void **state)
     assert_true(hull_misses_ball(&hull, v3(0, 0, 13), 1));
 }
 
+/* No surface point of a leaf is further than the furthest, and that is on it or the box around. */
+static void nothing_is_further_than_the_farthest(void **state)
+{
+    (void)state;
+    ShapeScratch *scratch = shape_scratch_new();
+    int met = 0;
+    for (uint32_t i = 0; i < 1000; i++) {
+        rng = rng_at(12, 1, i);
+        Arena *arena = arena_new();
+        Shape *shape = any_shape(arena, 0);
+        V3 n = v3_scale(v3_unit(pick_v3(1)), pick(0.1, 10));
+        for (int k = 0; k < 40 && shape->kind != SHAPE_PLANE; k++) {
+            ShapePoint at;
+            if (!surface_point(shape, scratch, &at))
+                continue;
+            V3 farthest = shape_farthest(shape, n);
+            assert_true(v3_dot(n, at.p) <= v3_dot(n, farthest) + v3_len(n) * 1e-9);
+            met++;
+        }
+        arena_free(arena);
+    }
+    assert_true(met > 5000);
+    shape_scratch_free(scratch);
+}
+
+/* It is a point of the leaf: a little further in is inside. */
+static void farthest_points_are_on_the_leaf(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i < 1000; i++) {
+        rng = rng_at(13, 1, i);
+        Arena *arena = arena_new();
+        Shape *shape = any_shape(arena, 0);
+        V3 n = pick_v3(1);
+        if (shape_is_convex(shape) && shape->kind != SHAPE_PLANE) {
+            V3 farthest = shape_farthest(shape, n), middle = bound_center(shape_bound(shape));
+            assert_true(shape_is_inside(shape, v3_mad(farthest, 1e-6, v3_sub(middle, farthest))));
+            assert_false(shape_is_inside(shape, v3_mad(farthest, 1e-6, v3_unit(n))));
+        }
+        arena_free(arena);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(missed_shapes_are_met_by_no_ray),
+        cmocka_unit_test(nothing_is_further_than_the_farthest),
+        cmocka_unit_test(farthest_points_are_on_the_leaf),
         cmocka_unit_test(a_convex_surface_does_not_hide_what_is_above_it),
         cmocka_unit_test(within_a_room_its_walls_are_missed),
         cmocka_unit_test(balls_beside_and_behind_are_missed),
