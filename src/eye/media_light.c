@@ -16,10 +16,6 @@ enum {
 /* What sums of light without shadows may be wrong by, in parts of the tolerance. */
 #define SUM_TOLERANCE 0.1f
 
-/* Light that is less than this part of the tolerance is not asked for shadows: half of it counts.
- */
-#define OPEN_TOLERANCE 0.5f
-
 /* With less than this part of the light open, shadows are known well: places that differ are then
  * at edges that need not be looked for. */
 #define OPEN_LITTLE 0.5f

@@ -201,8 +201,7 @@ static inline int place_of(double x, int low, int high)
 
 /* Follow a ray to its end on the face.  In each step it leaves a cell for good, so that there are
  * no more of them than cells in a row and a column. */
-static void follow(const ShadowView *view, const ShadowFace *face, const FaceRay *r,
-                   LitStretches *out)
+static void follow(const ShadowFace *face, const FaceRay *r, LitStretches *out)
 {
     const unsigned side = SHADOW_SIDE;
     const RayPoint *o = &r->first, *d = &r->step;
@@ -213,7 +212,7 @@ static void follow(const ShadowView *view, const ShadowFace *face, const FaceRay
     out->count = 1;
     out->items[0] = (LitStretch){0, 0, LIT_UNSURE};
     while (a.s < 1 && (unsigned)i < side && (unsigned)j < side) {
-        const ShadowCell *cell = &view->cells[face->cell[j][i]];
+        const ShadowCell *cell = &face->cells[face->cell[j][i]];
         int size = (int)cell->size, low_i = i & -size, low_j = j & -size;
         int edge_i = low_i + (is_u_rising ? size : 0), edge_j = low_j + (is_v_rising ? size : 0);
         double u = d->u != 0 ? (edge_i - o->u) * per_u : INFINITY;
@@ -253,7 +252,7 @@ void shadow_view_cut(const ShadowView *view, const Ray *ray, double begin, doubl
             break;
         is_seen[next] = false;
         LitStretches found;
-        follow(view, &view->faces[next], &rays[next], &found);
+        follow(&view->faces[next], &rays[next], &found);
         add_stretch(out, rays[next].begin, LIT_UNSURE);
         for (int i = 0; i < found.count; i++)
             add_stretch(out, ray_t(&rays[next], found.items[i].end), found.items[i].state);

@@ -23,6 +23,7 @@ typedef struct Part {
     bool is_convex, is_opaque;
     bool is_at_lamp; /* its surface is: nothing is said about it */
     double nearest;  /* nearness that no point of it is above */
+    double touch;    /* a surface no further than this from where rays begin is there */
 } Part;
 
 typedef struct Cell {
@@ -36,9 +37,6 @@ typedef struct Sight {
     ShapeScratch *shapes;
     Enclosure nothing; /* of an empty cell: further than everything */
 } Sight;
-
-/* A lamp this near a surface, in parts of the size of the numbers, may be on either side of it. */
-#define SHADOW_TOUCH 1e-7
 
 /* Return true if a is over b in all of the cell. */
 bool plane_is_over(const Plane *a, const Plane *b, const Cell *cell);

@@ -23,6 +23,9 @@ enum {
 /* An outline may be this part of a cell's size wide. */
 #define OUTLINE_WIDTH 0.1
 
+/* Corners that an outline passes by this near, in parts of the cell's size, are on neither side. */
+#define CLEAR_SIDE 1e-3
+
 /* Planes stand off what they enclose by this part of the nearness, and cells are wider by this part
  * of their size: far above the rounding of corners and of a cell's numbers. */
 #define SLACK 1e-5
@@ -209,6 +212,19 @@ static bool is_leaf_missed(const ShadowFace *face, const Cell *cell, const Shape
     return false;
 }
 
+/* Is the inside of a solid, not turned inside out, all between its surfaces? */
+static bool is_between_surfaces(const Shape *solid)
+{
+    if (solid->is_inverted || solid->kind == SHAPE_PLANE || solid->kind == SHAPE_DISC)
+        return false;
+    for (int i = 0; i < solid->child_count; i++) {
+        bool is_child = is_between_surfaces(solid->children[i]);
+        if (is_child == (solid->kind == SHAPE_INTERSECTION))
+            return is_child;
+    }
+    return solid->kind != SHAPE_INTERSECTION;
+}
+
 bool part_is_missed(const ShadowFace *face, const Cell *cell, const Shape *shape)
 {
     switch (shape->kind) {
@@ -223,8 +239,7 @@ bool part_is_missed(const ShadowFace *face, const Cell *cell, const Shape *shape
     case SHAPE_INTERSECTION:
         for (int i = 0; i < shape->child_count; i++) {
             const Shape *child = shape->children[i];
-            if (!child->is_inverted && child->kind != SHAPE_DISC &&
-                part_is_missed(face, cell, child))
+            if (is_between_surfaces(child) && part_is_missed(face, cell, child))
                 return true;
         }
         return false;
@@ -242,7 +257,7 @@ typedef struct FacePoint {
     V3 p, n; /* on the surface, and its normal */
 } FacePoint;
 
-static FacePoint meet(const Sight *sight, const Shape *shape, double u, double v)
+static FacePoint meet(const Sight *sight, const Part *part, double u, double v)
 {
     Ray ray = lamp_ray(sight->face, u, v);
     double length = v3_len(ray.d);
@@ -250,12 +265,12 @@ static FacePoint meet(const Sight *sight, const Shape *shape, double u, double v
     Crossing crossing;
     ShapePoint point;
     FacePoint out = {.u = u, .v = v};
-    if (!shape_closest(shape, &ray, sight->shapes, &crossing))
+    if (!shape_closest(part->shape, &ray, sight->shapes, &crossing))
         return out;
     shape_point(&crossing, &ray, &point);
     out.is_met = true;
     out.is_entering = v3_dot(point.ng, ray.d) < 0;
-    out.is_at_lamp = crossing.t <= SHADOW_TOUCH * v3_max_abs(ray.o);
+    out.is_at_lamp = crossing.t <= part->touch;
     out.nearness = sight->face->is_parallel ? -crossing.t : length / crossing.t;
     out.p = point.p;
     out.n = point.ng;
@@ -270,12 +285,12 @@ typedef struct CornerHits {
     Plane tangents[CORNERS]; /* of those that meet it, one after the other */
 } CornerHits;
 
-static void meet_corners(const Sight *sight, const Cell *cell, const Shape *shape, CornerHits *out)
+static void meet_corners(const Sight *sight, const Cell *cell, const Part *part, CornerHits *out)
 {
     out->count = out->entering = 0;
     out->is_at_lamp = false;
     for (int i = 0; i < CORNERS; i++) {
-        FacePoint hit = meet(sight, shape, corner_u(cell, i), corner_v(cell, i));
+        FacePoint hit = meet(sight, part, corner_u(cell, i), corner_v(cell, i));
         if (!hit.is_met)
             continue;
         out->is_at_lamp |= hit.is_at_lamp;
@@ -335,10 +350,11 @@ Enclosure part_enclose(const Sight *sight, const Cell *cell, const Part *part)
 {
     Enclosure out = {{0, 0, part->nearest}, sight->nothing.dark};
     CornerHits hits = {.count = 0};
-    if (part->shape->kind == SHAPE_PLANE)
+    bool is_plane = part->shape->kind == SHAPE_PLANE && part->shape->clip_count == 0;
+    if (is_plane)
         out = enclose_plane(sight, cell, &part->shape->u.plane);
     else if (part->is_convex)
-        meet_corners(sight, cell, part->shape, &hits);
+        meet_corners(sight, cell, part, &hits);
     bool is_outside =
         hits.entering > 0 && hits.entering == hits.count && !may_begin_inside(sight, part);
     if (is_outside) {
@@ -365,32 +381,33 @@ typedef struct Filled {
     int count, end_count;
     FacePoint points[CORNERS + 2];
     FacePoint ends[2]; /* those of the outline */
-    V2 outside;        /* a corner that is not met */
+    int outside_count;
+    V2 outside[CORNERS]; /* corners that are not met */
 } Filled;
 
 /* Return the last point met between one that is and one that is not. */
-static FacePoint find_outline(const Sight *sight, const Shape *shape, FacePoint in, FacePoint out)
+static FacePoint find_outline(const Sight *sight, const Part *part, FacePoint in, FacePoint out)
 {
     for (int i = 0; i < OUTLINE_STEPS; i++) {
-        FacePoint middle = meet(sight, shape, 0.5 * (in.u + out.u), 0.5 * (in.v + out.v));
+        FacePoint middle = meet(sight, part, 0.5 * (in.u + out.u), 0.5 * (in.v + out.v));
         *(middle.is_met ? &in : &out) = middle;
     }
     return in;
 }
 
 /* Returns false if the outline does not cross the cell from side to side. */
-static bool find_filled(const Sight *sight, const Cell *cell, const Shape *shape, Filled *out)
+static bool find_filled(const Sight *sight, const Cell *cell, const Part *part, Filled *out)
 {
     static const int around[] = {0, 1, 3, 2};
     FacePoint corners[CORNERS];
     int changes = 0;
-    out->count = out->end_count = 0;
+    out->count = out->end_count = out->outside_count = 0;
     for (int i = 0; i < CORNERS; i++) {
-        corners[i] = meet(sight, shape, corner_u(cell, around[i]), corner_v(cell, around[i]));
+        corners[i] = meet(sight, part, corner_u(cell, around[i]), corner_v(cell, around[i]));
         if (corners[i].is_met)
             out->points[out->count++] = corners[i];
         else
-            out->outside = (V2){corners[i].u, corners[i].v};
+            out->outside[out->outside_count++] = (V2){corners[i].u, corners[i].v};
     }
     for (int i = 0; i < CORNERS; i++) {
         changes += corners[i].is_met != corners[(i + 1) % CORNERS].is_met;
@@ -402,7 +419,7 @@ static bool find_filled(const Sight *sight, const Cell *cell, const Shape *shape
         if (from->is_met == to->is_met)
             continue;
         FacePoint end =
-            find_outline(sight, shape, from->is_met ? *from : *to, from->is_met ? *to : *from);
+            find_outline(sight, part, from->is_met ? *from : *to, from->is_met ? *to : *from);
         out->ends[out->end_count++] = out->points[out->count++] = end;
     }
     return changes == 2;
@@ -449,6 +466,26 @@ static double reach_of(const ShadowFace *face, const Shape *leaf, V2 n, double r
     return INFINITY;
 }
 
+/* Find the unit direction across the outline, out of the part.  Returns false when the outline is
+ * not clearly between what is met and what is not. */
+static bool outward(const Filled *filled, double size, V2 *n)
+{
+    const FacePoint *p = filled->ends, *q = filled->points;
+    *n = (V2){p[1].v - p[0].v, p[0].u - p[1].u};
+    double length = hypot(n->u, n->v), first = filled->outside[0].u - p[0].u;
+    double side = n->u * first + n->v * (filled->outside[0].v - p[0].v);
+    length = copysign(length, side);
+    *n = (V2){n->u / length, n->v / length};
+    double limit = CLEAR_SIDE * size;
+    for (int i = 0; i < filled->outside_count; i++)
+        if (!(n->u * (filled->outside[i].u - p->u) + n->v * (filled->outside[i].v - p->v) > limit))
+            return false;
+    for (int i = 0; i < filled->count - 2; i++)
+        if (!(n->u * (q[i].u - p->u) + n->v * (q[i].v - p->v) <= 0))
+            return false;
+    return true;
+}
+
 bool part_edge(const Sight *sight, const Cell *cell, const Part *part, ShadowEdge *edge,
                Plane *dark)
 {
@@ -456,14 +493,12 @@ bool part_edge(const Sight *sight, const Cell *cell, const Part *part, ShadowEdg
     const Shape *shape = part->shape;
     bool is_simple = part->is_opaque && part->is_convex && !part->is_at_lamp &&
                      shape->kind < SHAPE_UNION && shape->kind != SHAPE_PLANE;
-    if (!is_simple || may_begin_inside(sight, part) || !find_filled(sight, cell, shape, &filled))
+    if (!is_simple || may_begin_inside(sight, part) || !find_filled(sight, cell, part, &filled))
+        return false;
+    V2 n;
+    if (!outward(&filled, cell->size, &n))
         return false;
     const FacePoint *p = filled.ends;
-    V2 n = {p[1].v - p[0].v, p[0].u - p[1].u};
-    double length = sqrt(n.u * n.u + n.v * n.v);
-    double side = n.u * (filled.outside.u - p[0].u) + n.v * (filled.outside.v - p[0].v);
-    length = copysign(length, side);
-    n = (V2){n.u / length, n.v / length};
     double slack = SLACK * cell->size, inside = n.u * p[0].u + n.v * p[0].v;
     double outside = reach_of(sight->face, shape, n, inside, slack);
     if (!(outside - inside <= OUTLINE_WIDTH * cell->size))

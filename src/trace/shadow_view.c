@@ -5,6 +5,7 @@
 #include "trace/shadow_int.h"
 
 #include "base/mem.h"
+#include "base/work.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -21,8 +22,8 @@ enum { PARTS_MAX = 4096 };
 #define HALF_SIDE (SHADOW_SIDE / 2.0)
 
 typedef struct Builder {
-    ShadowView *view;
     ShadowFace *face;
+    long looks; /* so many parts were looked at in cells */
     Sight sight;
     size_t count, capacity;
     Part *parts;   /* those in the cells that are being looked at, one list behind the other */
@@ -72,19 +73,19 @@ static void fill_square(Builder *b, const Cell *cell, size_t index)
 static void finish_cell(Builder *b, const Cell *cell, const ShadowEdge *edge, const Enclosure *all,
                         const Enclosure *rest)
 {
-    ShadowView *view = b->view;
-    void *cells = view->cells;
-    if (mem_grow(&cells, view->count, &view->capacity, sizeof *view->cells)) {
+    ShadowFace *face = b->face;
+    void *cells = face->cells;
+    if (mem_grow(&cells, face->count, &face->capacity, sizeof *face->cells)) {
         b->is_short = true;
         return;
     }
-    view->cells = cells;
-    view->cells[view->count] = (ShadowCell){.size = cell->side,
+    face->cells = cells;
+    face->cells[face->count] = (ShadowCell){.size = cell->side,
                                             .has_edge = edge != NULL,
                                             .edge = edge ? edge_to_cells(edge) : (ShadowEdge){0},
                                             .all = both_to_cells(all),
                                             .rest = both_to_cells(rest)};
-    fill_square(b, cell, view->count++);
+    fill_square(b, cell, face->count++);
 }
 
 static bool is_same_plane(const ShadowPlane *x, const ShadowPlane *y)
@@ -95,16 +96,16 @@ static bool is_same_plane(const ShadowPlane *x, const ShadowPlane *y)
 /* Join the cells of a square, from `first` on, if quartering it told nothing new. */
 static void join_quarters(Builder *b, const Cell *cell, size_t first)
 {
-    ShadowView *view = b->view;
-    if (b->is_short || view->count != first + 4)
+    ShadowFace *face = b->face;
+    if (b->is_short || face->count != first + 4)
         return;
-    ShadowCell *c = view->cells + first;
+    ShadowCell *c = face->cells + first;
     for (int i = 0; i < 4; i++)
         if (c[i].has_edge || !is_same_plane(&c[i].all.lit, &c->all.lit) ||
             !is_same_plane(&c[i].all.dark, &c->all.dark))
             return;
     c->size = cell->side;
-    view->count = first + 1;
+    face->count = first + 1;
     fill_square(b, cell, first);
 }
 
@@ -121,6 +122,7 @@ static Cell quarter_of(const Cell *cell, int quarter)
 static void look_at_parts(Builder *b, const Cell *cell, size_t first, size_t end, Enclosure *known,
                           Enclosure *all)
 {
+    b->looks += (long)(end - first);
     for (size_t i = first; i < end && !b->is_short; i++) {
         Part part = b->parts[i];
         if (!part.is_at_lamp && part_is_missed(b->face, cell, part.shape))
@@ -142,29 +144,44 @@ static void look_at_parts(Builder *b, const Cell *cell, size_t first, size_t end
     }
 }
 
-/* Make the cells of a square with the parts from `first` to `end` and what `settled` encloses. */
 static void make_cells(Builder *b, const Cell *cell, size_t first, size_t end,
-                       const Enclosure *settled)
+                       const Enclosure *settled, long looks);
+
+/* Quarter a square; the quarters share the looks that are left. */
+static void make_quarters(Builder *b, const Cell *cell, size_t first, size_t end,
+                          const Enclosure *settled, long looks)
+{
+    size_t cells = b->face->count;
+    long begin = b->looks;
+    for (int i = 0; i < 4 && !b->is_short; i++) {
+        Cell quarter = quarter_of(cell, i);
+        make_cells(b, &quarter, first, end, settled, (looks - (b->looks - begin)) / (4 - i));
+    }
+    join_quarters(b, cell, cells);
+}
+
+/* Make the cells of a square with the parts from `first` to `end` and what `settled` encloses,
+ * with about so many looks at parts. */
+static void make_cells(Builder *b, const Cell *cell, size_t first, size_t end,
+                       const Enclosure *settled, long looks)
 {
     Enclosure known = *settled, all = *settled;
     size_t open = b->count;
     look_at_parts(b, cell, first, end, &known, &all);
     size_t open_end = b->count;
+    looks -= (long)(end - first);
+    bool is_done = open_end == open || cell->side == 1 || looks < 4 * (long)(open_end - open) ||
+                   work_interrupted || plane_is_over(&all.dark, &all.lit, cell);
     ShadowEdge edge;
     Plane dark;
     if (open_end == open + 1 && part_edge(&b->sight, cell, &b->parts[open], &edge, &dark)) {
         const Enclosure inside = {all.lit, dark};
         enclosure_add(&all, &inside, cell);
         finish_cell(b, cell, &edge, &all, &known);
-    } else if (open_end == open || cell->side == 1 || plane_is_over(&all.dark, &all.lit, cell)) {
+    } else if (is_done) {
         finish_cell(b, cell, NULL, &all, &all);
     } else {
-        size_t cells = b->view->count;
-        for (int i = 0; i < 4 && !b->is_short; i++) {
-            Cell quarter = quarter_of(cell, i);
-            make_cells(b, &quarter, open, open_end, &known);
-        }
-        join_quarters(b, cell, cells);
+        make_quarters(b, cell, open, open_end, &known, looks);
     }
     b->count = open;
 }
@@ -183,17 +200,34 @@ static void depths(const ShadowFace *face, const Shape *shape, double *near, dou
     *far = is_finite ? middle + reach : INFINITY;
 }
 
-/* Is the lamp on the surface of a solid, or very near? */
-static bool is_at_surface(const Shape *shape, V3 p)
+/* A lamp this near a surface, in parts of the size of the numbers, may be on either side of it. */
+#define TOUCH 1e-7
+
+/* How near to a surface counts as on it, for a lamp at p: by the size of the shape, where it has
+ * one. */
+static double touch_of(const Shape *shape, V3 p)
+{
+    Bound bound = shape_bound(shape);
+    const double sides[] = {p.x,        p.y,        p.z,        bound.lo.x, bound.lo.y,
+                            bound.lo.z, bound.hi.x, bound.hi.y, bound.hi.z};
+    double most = shape->kind == SHAPE_PLANE ? fabs(shape->u.plane.distance) : 0;
+    for (size_t i = 0; i < sizeof sides / sizeof *sides; i++)
+        most = isfinite(sides[i]) ? num_max(most, fabs(sides[i])) : most;
+    return TOUCH * most;
+}
+
+/* Is p on the surface of a solid, or within `touch` of it?  Looks at points around it, and at one
+ * towards the middle: at a tip none of the others may be inside. */
+static bool is_at_surface(const Shape *shape, V3 p, double touch)
 {
     if (!shape_is_solid(shape))
         return false;
+    Bound bound = shape_bound(shape);
+    V3 inward = bound_is_finite(bound) ? v3_unit(v3_sub(bound_center(bound), p)) : v3(0, 0, 0);
     bool is_inside = shape_is_inside(shape, p);
-    double step = SHADOW_TOUCH * num_max(v3_max_abs(p), DBL_MIN);
-    for (int i = 0; i < 6; i++) {
-        double way = i & 1 ? -step : step;
-        V3 move = v3(i / 2 == 0 ? way : 0, i / 2 == 1 ? way : 0, i / 2 == 2 ? way : 0);
-        if (shape_is_inside(shape, v3_add(p, move)) != is_inside)
+    for (int i = 0; i < 27; i++) {
+        V3 move = i == 13 ? inward : v3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+        if (shape_is_inside(shape, v3_mad(p, touch, move)) != is_inside)
             return true;
     }
     return false;
@@ -213,8 +247,12 @@ static void add_shape(Builder *b, const Shape *shape, bool is_opaque)
     if (far < 0)
         return;
     double nearest = b->face->is_parallel ? -near : near > 0 ? 1 / near : INFINITY;
-    bool is_at_lamp = !b->face->is_parallel && is_at_surface(shape, b->face->origin);
-    Part part = {shape, shape_is_convex(shape), is_opaque, is_at_lamp, nearest};
+    Part part = {.shape = shape,
+                 .is_convex = shape_is_convex(shape),
+                 .is_opaque = is_opaque,
+                 .nearest = nearest,
+                 .touch = touch_of(shape, b->face->origin)};
+    part.is_at_lamp = !b->face->is_parallel && is_at_surface(shape, b->face->origin, part.touch);
     push_part(b, &part);
 }
 
@@ -222,22 +260,6 @@ static int nearer_first(const void *a, const void *b)
 {
     double x = ((const Part *)a)->nearest, y = ((const Part *)b)->nearest;
     return x > y ? -1 : x < y;
-}
-
-static void make_face(Builder *b, const Tracer *tracer, int face)
-{
-    b->face = &b->view->faces[face];
-    b->sight.face = b->face;
-    double far = b->face->is_parallel ? -DBL_MAX : 0;
-    b->sight.nothing = (Enclosure){{0, 0, far}, {0, 0, far}};
-    b->count = 0;
-    for (uint32_t i = 0; i < tracer->scene->object_count; i++)
-        if (tracer->objects[i].shadow != SHADOW_NONE)
-            add_shape(b, tracer->objects[i].shape, tracer->objects[i].shadow == SHADOW_BLOCK);
-    if (b->count > 1)
-        qsort(b->parts, b->count, sizeof *b->parts, nearer_first);
-    Cell whole = {-1, -1, 2, 0, 0, SHADOW_SIDE};
-    make_cells(b, &whole, 0, b->count, &b->sight.nothing);
 }
 
 static bool has_one_face(const Light *light)
@@ -269,33 +291,56 @@ static void place_face(ShadowFace *face, const Tracer *tracer, const Light *ligh
     face->v = v3_scale(face->v, edge);
 }
 
+bool shadow_view_is_of_use(const Tracer *tracer, const Light *light)
+{
+    double edge = face_edge(tracer, light);
+    bool is_point = light->area.size1 == 0 && !light->is_shadowless;
+    bool has_bound = !light->is_parallel || bound_radius(tracer->bound) > 0;
+    return is_point && has_bound && edge > 0 && isfinite(edge);
+}
+
 ShadowView *shadow_view_new(const Tracer *tracer, const Light *light)
 {
-    Builder b = {.view = mem_alloc(sizeof *b.view), .sight.shapes = shape_scratch_new()};
-    b.is_short = !b.view || !b.sight.shapes;
-    if (!b.is_short) {
-        b.view->face_count = has_one_face(light) ? 1 : SHADOW_FACES_MAX;
-        b.view->faces = mem_array((size_t)b.view->face_count, sizeof *b.view->faces);
-        b.is_short = !b.view->faces;
-    }
-    for (int i = 0; !b.is_short && i < b.view->face_count; i++) {
-        place_face(&b.view->faces[i], tracer, light, i);
-        make_face(&b, tracer, i);
-    }
-    mem_free(b.parts);
-    shape_scratch_free(b.sight.shapes);
-    if (b.is_short) {
-        shadow_view_free(b.view);
+    ShadowView *view = mem_alloc(sizeof *view);
+    if (!view)
+        return NULL;
+    view->face_count = has_one_face(light) ? 1 : SHADOW_FACES_MAX;
+    view->faces = mem_array((size_t)view->face_count, sizeof *view->faces);
+    if (!view->faces) {
+        mem_free(view);
         return NULL;
     }
-    return b.view;
+    for (int i = 0; i < view->face_count; i++)
+        place_face(&view->faces[i], tracer, light, i);
+    return view;
+}
+
+bool shadow_view_prove(ShadowView *view, int face, const Tracer *tracer, long looks)
+{
+    ShadowFace *f = &view->faces[face];
+    double far = f->is_parallel ? -DBL_MAX : 0;
+    Builder b = {.face = f, .sight = {.face = f, .shapes = shape_scratch_new()}};
+    b.sight.nothing = (Enclosure){{0, 0, far}, {0, 0, far}};
+    b.is_short = !b.sight.shapes;
+    for (uint32_t i = 0; i < tracer->scene->object_count && !b.is_short; i++)
+        if (tracer->objects[i].shadow != SHADOW_NONE)
+            add_shape(&b, tracer->objects[i].shape, tracer->objects[i].shadow == SHADOW_BLOCK);
+    if (b.count > 1)
+        qsort(b.parts, b.count, sizeof *b.parts, nearer_first);
+    Cell whole = {-1, -1, 2, 0, 0, SHADOW_SIDE};
+    if (!b.is_short)
+        make_cells(&b, &whole, 0, b.count, &b.sight.nothing, looks);
+    mem_free(b.parts);
+    shape_scratch_free(b.sight.shapes);
+    return !b.is_short;
 }
 
 void shadow_view_free(ShadowView *view)
 {
     if (!view)
         return;
+    for (int i = 0; i < view->face_count; i++)
+        mem_free(view->faces[i].cells);
     mem_free(view->faces);
-    mem_free(view->cells);
     mem_free(view);
 }

@@ -47,19 +47,27 @@ typedef struct ShadowFace {
     V3 origin;
     V3 u, v, w; /* w: unit, along it is the depth; u and v lead to the edge at depth 1 */
     bool is_parallel;
+    size_t count, capacity;
+    ShadowCell *cells;
     uint32_t cell[SHADOW_SIDE][SHADOW_SIDE]; /* by v, then u */
 } ShadowFace;
 
 typedef struct ShadowView {
     int face_count;
     ShadowFace *faces;
-    size_t count, capacity;
-    ShadowCell *cells;
 } ShadowView;
 
-/* Prove what can be proved about the light of a lamp that shadow rays meet as one point, or that
- * is parallel.  Returns NULL when memory is out.  Free with shadow_view_free. */
+/* Can anything be known of a light?  It must be met as one point by shadow rays, or be parallel,
+ * and have something to shine on. */
+bool shadow_view_is_of_use(const Tracer *tracer, const Light *light);
+
+/* Make the faces of the view of such a light, nothing known yet.  Returns NULL when memory is out.
+ * Free with shadow_view_free. */
 ShadowView *shadow_view_new(const Tracer *tracer, const Light *light);
+
+/* Prove what can be proved about a face, looking at no more than `looks` parts of objects in cells,
+ * but at all of them once.  Returns false when memory is out. */
+bool shadow_view_prove(ShadowView *view, int face, const Tracer *tracer, long looks);
 void shadow_view_free(ShadowView *view);
 
 /* Cut a ray from begin to end, finite, by what is known. */

@@ -3,6 +3,7 @@
 #include "trace/trace_int.h"
 
 #include "base/mem.h"
+#include "base/work.h"
 #include "math/eps.h"
 #include "trace/shadow_view.h"
 
@@ -10,6 +11,10 @@
 
 /* With more objects the ray index is as good, with more lights views cost too much memory. */
 enum { VIEW_OBJECTS_MAX = 1024, VIEW_LIGHTS_MAX = 32 };
+
+/* Looks at parts of objects that prove shadows: for all lights together, and for one face of one.
+ */
+enum { SHADOW_LOOKS = 400000, SHADOW_FACE_LOOKS = 100000 };
 
 /* Which surfaces the leaves of a shape have. */
 typedef struct LeafSummary {
@@ -176,22 +181,72 @@ static Status make_views(Tracer *tracer, const Bound *boxes, uint32_t count, Dia
     return is_complete ? OK : diag_no_memory(diag, "the views of eye and lights");
 }
 
-/* What is known of the shadows of lights without size that media scatter. */
-static Status make_shadow_views(Tracer *tracer, Diag *diag)
+static bool has_scattering(const Interior *interior)
+{
+    for (int i = 0; i < interior->media_count; i++)
+        if (!rgb_is_black(interior->media[i]->scattering))
+            return true;
+    return false;
+}
+
+/* Do media scatter the light of lamps anywhere? */
+static bool media_scatter_light(const Tracer *tracer)
 {
     const Scene *scene = tracer->scene;
-    if (!plan_has(tracer->plan, FEATURE_MEDIA) || !plan_has(tracer->plan, FEATURE_LIGHTS) ||
-        scene->object_count > VIEW_OBJECTS_MAX)
+    if (!plan_has(tracer->plan, FEATURE_MEDIA) || !plan_has(tracer->plan, FEATURE_LIGHTS))
+        return false;
+    for (int i = 0; i < scene->atmosphere.media_count; i++)
+        if (!rgb_is_black(scene->atmosphere.media[i]->scattering))
+            return true;
+    for (uint32_t i = 0; i < scene->surface_count; i++)
+        if (has_scattering(scene->surfaces[i].interior))
+            return true;
+    return false;
+}
+
+/* The faces of the views of lights, to be proved in any order. */
+typedef struct ShadowWork {
+    const Tracer *tracer;
+    size_t count;
+    ShadowView *views[VIEW_LIGHTS_MAX * SHADOW_FACES_MAX];
+    int faces[VIEW_LIGHTS_MAX * SHADOW_FACES_MAX];
+    bool is_short[VIEW_LIGHTS_MAX * SHADOW_FACES_MAX]; /* memory ran out */
+} ShadowWork;
+
+static void prove_face(void *ctx, size_t index, int thread)
+{
+    (void)thread;
+    ShadowWork *work = ctx;
+    long looks = SHADOW_LOOKS / (long)work->count;
+    looks = looks < SHADOW_FACE_LOOKS ? looks : SHADOW_FACE_LOOKS;
+    work->is_short[index] =
+        !shadow_view_prove(work->views[index], work->faces[index], work->tracer, looks);
+}
+
+/* What is known of the shadows of lights without size that media scatter. */
+static Status make_shadow_views(Tracer *tracer, int threads, Diag *diag)
+{
+    const Scene *scene = tracer->scene;
+    ShadowWork work = {.tracer = tracer};
+    if (!media_scatter_light(tracer) || scene->object_count > VIEW_OBJECTS_MAX)
         return OK;
     for (int i = 0; i < scene->light_count && i < VIEW_LIGHTS_MAX; i++) {
         const Light *light = &scene->lights[i];
-        if (!light->lights_media || light->is_shadowless || light->area.size1 > 0 ||
-            tracer->light_interiors[i])
+        if (!light->lights_media || tracer->light_interiors[i] ||
+            !shadow_view_is_of_use(tracer, light))
             continue;
-        tracer->shadow_views[i] = shadow_view_new(tracer, light);
-        if (!tracer->shadow_views[i])
+        ShadowView *view = tracer->shadow_views[i] = shadow_view_new(tracer, light);
+        if (!view)
             return diag_no_memory(diag, "the shadows of lights");
+        for (int face = 0; face < view->face_count; face++, work.count++) {
+            work.views[work.count] = view;
+            work.faces[work.count] = face;
+        }
     }
+    TRY(work_for(threads, work.count, prove_face, &work));
+    for (size_t i = 0; i < work.count; i++)
+        if (work.is_short[i])
+            return diag_no_memory(diag, "the shadows of lights");
     return OK;
 }
 
@@ -283,7 +338,7 @@ Status tracer_new(const Scene *scene, const Plan *plan, int threads, Diag *diag,
         tracer->bound = (Bound){{0, 0, 0}, {0, 0, 0}};
     Status status = index_objects(tracer, threads, diag);
     if (status == OK)
-        status = make_shadow_views(tracer, diag);
+        status = make_shadow_views(tracer, threads, diag);
     if (status == OK) {
         tracer->bundles = bundle_index_new(tracer->objects, scene->object_count);
         status = tracer->bundles ? OK : diag_no_memory(diag, "the tracer");
