@@ -14,6 +14,17 @@ static Status write_difference(const Args *args, const Image *a, const Image *b)
     return status;
 }
 
+static Status write_flip_map(const Args *args, const Image *a, const Image *reference)
+{
+    if (!args_has(args, OPT_FLIP_MAP))
+        return OK;
+    Image map;
+    TRY(image_flip(args->diag, a, reference, &map));
+    Status status = picture_write(args->diag, args->value[OPT_FLIP_MAP], &map);
+    image_done(&map);
+    return status;
+}
+
 static Status compare_loaded(const Args *args, Image *a, Image *b)
 {
     Thresholds limits;
@@ -22,6 +33,7 @@ static Status compare_loaded(const Args *args, Image *a, Image *b)
     TRY(region_apply(args, a, b));
     TRY(image_compare(args->diag, a, b, &result));
     TRY(write_difference(args, a, b));
+    TRY(write_flip_map(args, a, b));
     if (args_has(args, OPT_JSON)) {
         printf("{");
         metrics_print_json(stdout, &result);

@@ -15,6 +15,7 @@ Status thresholds_read(const Args *args, Thresholds *out)
 {
     TRY(args_number(args, OPT_MAX_RMSE, 0, INFINITY, NAN, &out->max_rmse));
     TRY(args_number(args, OPT_MAX_RELMSE, 0, INFINITY, NAN, &out->max_rel_mse));
+    TRY(args_number(args, OPT_MAX_FLIP, 0, 1, NAN, &out->max_flip));
     TRY(args_number(args, OPT_MIN_PSNR, -INFINITY, INFINITY, NAN, &out->min_psnr));
     return args_number(args, OPT_MIN_SSIM, -1, 1, NAN, &out->min_ssim);
 }
@@ -57,17 +58,19 @@ static Status check_least(Diag *diag, const char *name, double found, double lim
 Status thresholds_check(Diag *diag, const Thresholds *limits, const CompareResult *result)
 {
     bool has_limit = !isnan(limits->max_rmse) || !isnan(limits->max_rel_mse) ||
-                     !isnan(limits->min_psnr) || !isnan(limits->min_ssim);
-    Status status[5] = {
+                     !isnan(limits->max_flip) || !isnan(limits->min_psnr) ||
+                     !isnan(limits->min_ssim);
+    Status status[] = {
         check_most(diag, "rmse", result->rmse, limits->max_rmse),
         check_most(diag, "relmse", result->rel_mse, limits->max_rel_mse),
+        check_most(diag, "flip", result->flip, limits->max_flip),
         check_least(diag, "psnr", result->psnr, limits->min_psnr),
         check_least(diag, "ssim", result->ssim, limits->min_ssim),
     };
     if (has_limit && result->bad_a + result->bad_b > 0)
-        status[4] = diag_fail(diag, ERR_COMPARE, "%zu and %zu pixels are not numbers",
-                              result->bad_a, result->bad_b);
-    for (int i = 0; i < 5; i++)
+        return diag_fail(diag, ERR_COMPARE, "%zu and %zu pixels are not numbers", result->bad_a,
+                         result->bad_b);
+    for (size_t i = 0; i < sizeof status / sizeof *status; i++)
         TRY(status[i]);
     return OK;
 }
@@ -76,9 +79,11 @@ void metrics_print(FILE *file, const CompareResult *r)
 {
     fprintf(file, "compared %s\n", r->is_display ? "display values (sRGB)" : "linear light");
     fprintf(file, "rmse     %.6g\n", r->rmse);
+    fprintf(file, "mae      %.6g\n", r->mae);
     fprintf(file, "relmse   %.6g  (epsilon %g)\n", r->rel_mse, COMPARE_REL_EPSILON);
     fprintf(file, "psnr     %.4g dB\n", r->psnr);
     fprintf(file, "ssim     %.6f\n", r->ssim);
+    fprintf(file, "flip     %.6f\n", r->flip);
     fprintf(file, "max      %.6g\n", r->max_error);
     fprintf(file, "means    %.6g %.6g\n", r->mean_a, r->mean_b);
     fprintf(file, "light    %.6g %.6g\n", r->light_a, r->light_b);
@@ -91,8 +96,9 @@ void metrics_print_json(FILE *file, const CompareResult *r)
     const struct {
         const char *name;
         double value;
-    } items[] = {{"rmse", r->rmse},           {"relmse", r->rel_mse},
-                 {"psnr", r->psnr},           {"ssim", r->ssim},
+    } items[] = {{"rmse", r->rmse},           {"mae", r->mae},
+                 {"relmse", r->rel_mse},      {"psnr", r->psnr},
+                 {"ssim", r->ssim},           {"flip", r->flip},
                  {"max", r->max_error},       {"mean_a", r->mean_a},
                  {"mean_b", r->mean_b},       {"light_a", r->light_a},
                  {"light_b", r->light_b},     {"bad_a", (double)r->bad_a},

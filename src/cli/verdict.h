@@ -8,7 +8,7 @@
 
 /* Bounds on the metrics; NaN: not asked for. */
 typedef struct Thresholds {
-    double max_rmse, max_rel_mse, min_psnr, min_ssim;
+    double max_rmse, max_rel_mse, max_flip, min_psnr, min_ssim;
 } Thresholds;
 
 /* Read --max-rmse and its kin. */

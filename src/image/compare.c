@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "image/exr.h"
+#include "image/flip_int.h"
 #include "image/png_file.h"
 #include "image/ssim_int.h"
 #include "image/srgb.h"
@@ -94,7 +95,7 @@ static double light_of(float v, bool is_display)
 
 static void sum_errors(const float *a, const float *b, size_t pixels, CompareResult *out)
 {
-    double squares = 0, relative = 0, mean_a = 0, mean_b = 0, light_a = 0, light_b = 0;
+    double squares = 0, sum = 0, relative = 0, mean_a = 0, mean_b = 0, light_a = 0, light_b = 0;
     size_t used = 0;
     for (size_t i = 0; i < pixels; i++, a += 3, b += 3) {
         bool is_good_a = is_finite_pixel(a), is_good_b = is_finite_pixel(b);
@@ -106,6 +107,7 @@ static void sum_errors(const float *a, const float *b, size_t pixels, CompareRes
         for (int c = 0; c < 3; c++) {
             double va = a[c], vb = b[c], d = va - vb;
             squares += d * d;
+            sum += fabs(d);
             relative += d * d / (vb * vb + COMPARE_REL_EPSILON);
             out->max_error = fmax(out->max_error, fabs(d));
             mean_a += va;
@@ -116,6 +118,7 @@ static void sum_errors(const float *a, const float *b, size_t pixels, CompareRes
     }
     double scale = used ? 1 / (double)used : 0;
     out->rmse = sqrt(squares * scale);
+    out->mae = sum * scale;
     out->rel_mse = relative * scale;
     out->psnr = squares > 0 ? -10 * log10(squares * scale) : INFINITY;
     out->mean_a = mean_a * scale;
@@ -152,6 +155,49 @@ static Status find_ssim(Diag *diag, const Colours *a, const Colours *b, int widt
     return is_done ? OK : diag_no_memory(diag, "a comparison");
 }
 
+/* Linear colours for FLIP; what cannot be compared is black in both. */
+static void light_for_flip(const Colours *colours, const Colours *other, size_t pixels, float *out)
+{
+    for (size_t i = 0; i < 3 * pixels; i += 3) {
+        bool is_good = is_finite_pixel(colours->rgb + i) && is_finite_pixel(other->rgb + i);
+        for (size_t c = i; c < i + 3; c++) {
+            float v = is_good ? colours->rgb[c] : 0;
+            out[c] = colours->is_display ? srgb_decode(clip(v)) : v;
+        }
+    }
+}
+
+/* Fill `map` with a value a pixel. */
+static Status find_flip(Diag *diag, const Colours *a, const Colours *reference, int width,
+                        int height, float *map)
+{
+    size_t pixels = (size_t)width * (size_t)height;
+    float *light = mem_array(pixels, 6 * sizeof *light);
+    if (!light)
+        return diag_no_memory(diag, "a comparison");
+    light_for_flip(reference, a, pixels, light);
+    light_for_flip(a, reference, pixels, light + 3 * pixels);
+    bool is_done = flip_map(light, light + 3 * pixels, width, height, reference->is_display, map);
+    mem_free(light);
+    return is_done ? OK : diag_no_memory(diag, "a comparison");
+}
+
+static Status find_mean_flip(Diag *diag, const Colours *a, const Colours *reference, int width,
+                             int height, double *mean)
+{
+    size_t pixels = (size_t)width * (size_t)height;
+    float *map = mem_array(pixels, sizeof *map);
+    if (!map)
+        return diag_no_memory(diag, "a comparison");
+    Status status = find_flip(diag, a, reference, width, height, map);
+    double sum = 0;
+    for (size_t i = 0; i < pixels; i++)
+        sum += (double)map[i];
+    *mean = sum / (double)pixels;
+    mem_free(map);
+    return status;
+}
+
 Status image_compare(Diag *diag, const Image *a, const Image *reference, CompareResult *out)
 {
     Colours ca, cb;
@@ -162,6 +208,8 @@ Status image_compare(Diag *diag, const Image *a, const Image *reference, Compare
         sum_errors(ca.rgb, cb.rgb, (size_t)a->width * (size_t)a->height, out);
         status = find_ssim(diag, &ca, &cb, a->width, a->height, &out->ssim);
     }
+    if (status == OK)
+        status = find_mean_flip(diag, &ca, &cb, a->width, a->height, &out->flip);
     mem_free(ca.rgb);
     mem_free(cb.rgb);
     return status;
@@ -190,6 +238,54 @@ Status image_difference(Diag *diag, const Image *a, const Image *b, float gain, 
             subtract(ca.rgb, cb.rgb, (size_t)a->width * (size_t)a->height, gain, layer->pixels);
         else
             status = diag_no_memory(diag, "a difference image");
+    }
+    mem_free(ca.rgb);
+    mem_free(cb.rgb);
+    if (status != OK)
+        image_done(out);
+    return status;
+}
+
+/* A heat colour for 0 to 1, display values: even steps look alike. */
+static void heat(float x, float out[3])
+{
+    static const float stops[][3] = {{0.001f, 0, 0.014f},
+                                     {0.317f, 0.072f, 0.485f},
+                                     {0.716f, 0.215f, 0.475f},
+                                     {0.987f, 0.536f, 0.382f},
+                                     {0.987f, 0.991f, 0.75f}};
+    const int last = sizeof stops / sizeof *stops - 1;
+    float place = clip(x) * (float)last;
+    int i = place < (float)last ? (int)place : last - 1;
+    for (int c = 0; c < 3; c++)
+        out[c] = stops[i][c] + (place - (float)i) * (stops[i + 1][c] - stops[i][c]);
+}
+
+static Status flip_image(Diag *diag, const Colours *a, const Colours *reference, Image *out)
+{
+    ImageLayer *layer = image_add_layer(out, "", "RGB");
+    size_t pixels = (size_t)out->width * (size_t)out->height;
+    float *map = mem_array(pixels, sizeof *map);
+    Status status = OK;
+    if (!layer || !map)
+        status = diag_no_memory(diag, "a difference image");
+    if (status == OK)
+        status = find_flip(diag, a, reference, out->width, out->height, map);
+    for (size_t i = 0; i < pixels && status == OK; i++)
+        heat(map[i], layer->pixels + 3 * i);
+    mem_free(map);
+    return status;
+}
+
+Status image_flip(Diag *diag, const Image *a, const Image *reference, Image *out)
+{
+    Colours ca, cb;
+    *out = (Image){0};
+    Status status = extract_both(diag, a, reference, &ca, &cb);
+    if (status == OK) {
+        image_init(out, a->width, a->height);
+        out->is_display = true;
+        status = flip_image(diag, &ca, &cb, out);
     }
     mem_free(ca.rgb);
     mem_free(cb.rgb);

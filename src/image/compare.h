@@ -6,9 +6,11 @@
 
 typedef struct CompareResult {
     double rmse;      /* over the RGB channels */
+    double mae;       /* mean of |a-b| */
     double rel_mse;   /* mean of (a-b)^2 / (b^2 + COMPARE_REL_EPSILON), b is the reference */
     double psnr;      /* dB, peak 1; infinite for equal images */
     double ssim;      /* mean structural similarity of luma, display-encoded; Wang et al. 2004 */
+    double flip;      /* mean visible difference, 0 to 1: see image_flip */
     double max_error; /* largest difference of a channel */
     double mean_a, mean_b;
     double light_a, light_b; /* mean linear light, display values decoded */
@@ -30,6 +32,13 @@ Status image_compare(Diag *diag, const Image *a, const Image *reference, Compare
 /* Make the difference image |a-b| scaled by `gain`; is_display as in CompareResult.  Pixels
  * that cannot be compared are magenta. */
 Status image_difference(Diag *diag, const Image *a, const Image *b, float gain, Image *out);
+
+/* Make the picture of how visible the differences are, by pixel, from black (not) through purple
+ * and orange to near white: LDR-FLIP if display values are compared, else HDR-FLIP.  Pixels that
+ * are no numbers are black in both.
+ * Source: Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", 2020, and
+ * "Visualizing Errors in Rendered High Dynamic Range Images", 2021. */
+Status image_flip(Diag *diag, const Image *a, const Image *reference, Image *out);
 
 /* Read an EXR or PNG by its content. */
 Status image_load(Diag *diag, const char *path, Image *out);

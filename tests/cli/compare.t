@@ -27,6 +27,8 @@ says() {
 
 says '^rmse +0$' "an image equals itself" "$PMS" compare "$T/a.exr" "$T/a.exr"
 says '^ssim +1.0+$' "and its SSIM is 1" "$PMS" compare "$T/a.exr" "$T/a.exr"
+says '^mae +0$' "and its mean absolute error" "$PMS" compare "$T/a.exr" "$T/a.exr"
+says '^flip +0.0+$' "and nothing is seen to flip" "$PMS" compare "$T/a.exr" "$T/a.exr"
 says '^psnr +inf' "and its PSNR is infinite" "$PMS" compare "$T/a.exr" "$T/a.exr"
 says '^compared linear' "two EXRs are compared as light" "$PMS" compare "$T/a.exr" "$T/b.exr"
 says '^compared display' "an EXR and a PNG as display values" "$PMS" compare "$T/a.exr" "$T/a.png"
@@ -40,6 +42,7 @@ says '^rmse' "thresholds that hold" "$PMS" compare "$T/a.exr" "$T/b.exr" --max-r
 
 fails 1 "rmse is .*more than" "past --max-rmse" "$PMS" compare "$T/a.exr" "$T/b.exr" --max-rmse 1e-6
 fails 1 "relmse is" "past --max-relmse" "$PMS" compare "$T/a.exr" "$T/b.exr" --max-relmse 1e-9
+fails 1 "flip is .*more than" "past --max-flip" "$PMS" compare "$T/a.exr" "$T/b.exr" --max-flip 1e-6
 fails 1 "psnr is .*less than" "past --min-psnr" "$PMS" compare "$T/a.exr" "$T/b.exr" --min-psnr 90
 fails 1 "ssim is" "past --min-ssim" "$PMS" compare "$T/a.exr" "$T/b.exr" --min-ssim 1
 
@@ -47,6 +50,11 @@ for f in exr png; do
     run "$PMS" compare "$T/a.exr" "$T/b.exr" --diff "$T/diff.$f"
     [ "$code" -eq 0 ] && [ -s "$T/diff.$f" ]
     ok $? "difference image as $f"
+done
+for f in exr png; do
+    run "$PMS" compare "$T/a.exr" "$T/b.exr" --flip-map "$T/flip.$f"
+    [ "$code" -eq 0 ] && [ -s "$T/flip.$f" ]
+    ok $? "map of visible differences as $f"
 done
 says '^mean' "the difference image can be read" "$PMS" compare "$T/diff.exr" "$T/diff.png"
 if command -v exrheader >/dev/null 2>&1; then
