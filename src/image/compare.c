@@ -7,7 +7,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "image/exr.h"
-#include "image/flip_int.h"
+#include "image/flip.h"
 #include "image/png_file.h"
 #include "image/ssim_int.h"
 #include "image/srgb.h"

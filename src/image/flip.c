@@ -4,7 +4,7 @@
  * space, they are compared in one that is even to the eye; and edges and points are looked for in
  * their brightness.  All filters are products of one along x and one along y, or sums of two such.
  * SPDX-License-Identifier: Apache-2.0 */
-#include "image/flip_int.h"
+#include "image/flip.h"
 
 #include "base/mem.h"
 #include "image/srgb.h"

@@ -35,7 +35,7 @@ says '^compared display' "an EXR and a PNG as display values" "$PMS" compare "$T
 says '^ssim +(1.0|0.99)' "the PNG shows what the EXR holds" \
     "$PMS" compare "$T/a.exr" "$T/a.png" --max-rmse 0.002 --min-ssim 0.999
 says '"psnr": null' "JSON has no infinities" "$PMS" compare "$T/a.exr" "$T/a.exr" --json
-says '^\{"space": "linear", "rmse": [0-9.e-]+, "relmse": .*"bad_b": 0.*\}$' "JSON is one object" \
+says '^\{"space": "linear", "rmse": [0-9.e-]+, "mae": [0-9.e-]+, "relmse": .*"bad_b": 0.*\}$' "JSON is one object" \
     "$PMS" compare "$T/a.exr" "$T/b.exr" --json
 says '^rmse' "thresholds that hold" "$PMS" compare "$T/a.exr" "$T/b.exr" --max-rmse 0.2 \
     --max-relmse 1 --min-psnr 10 --min-ssim 0.9

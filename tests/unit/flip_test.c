@@ -1,6 +1,6 @@
 /* FLIP: against its definition, written as plainly as can be.  SPDX-License-Identifier: Apache-2.0
  */
-#include "image/flip_int.h"
+#include "image/flip.h"
 
 #include <math.h>
 #include <setjmp.h>

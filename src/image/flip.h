@@ -1,6 +1,6 @@
-/* FLIP, for image/ only.  SPDX-License-Identifier: Apache-2.0 */
-#ifndef PMS_IMAGE_FLIP_INT_H
-#define PMS_IMAGE_FLIP_INT_H
+/* FLIP: how visible differences are.  SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_IMAGE_FLIP_H
+#define PMS_IMAGE_FLIP_H
 
 #include <stdbool.h>
 
