@@ -32,6 +32,8 @@ typedef struct EyeOptions {
     const IrradianceMap *irradiance;   /* for final gathering; NULL: it finds glow alone */
     const struct IrradianceCache *cache; /* NULL: gather everywhere */
     const VolumeIndex *volume;         /* photons in media; NULL: none */
+    bool has_no_caustics, has_no_focus; /* no light reaches a target, so that none casts a full
+                                           shadow: on surfaces, in media */
     const PhotonReach *caustic_reach;  /* for caustic_limits */
     GatherLimits caustic_limits, global_limits;
 } EyeOptions;

@@ -16,7 +16,8 @@ static EyeLight eye_light(const EyeThread *eye, int index)
     const Light *light = &eye->scene->lights[index];
     bool has_area = light->area.size1 > 0 && light->area.size2 > 0;
     /* The plan decides, not the map: where photons were sent and none landed, the light they stand
-     * for must not come straight instead. */
+     * for must not come straight instead.  But where no lamp has a way to a target, its shadow is
+     * that of any object, as in the language. */
     bool is_refracted = plan->light_makes_caustics[index] && light->photon_refraction != TRI_OFF;
     return (EyeLight){
         .light = light,
@@ -24,9 +25,9 @@ static EyeLight eye_light(const EyeThread *eye, int index)
         .has_shadow = !light->is_shadowless && plan_has(plan, FEATURE_SHADOWS),
         .is_area = has_area && !light->is_shadowless && plan_has(plan, FEATURE_AREA_LIGHTS),
         .has_highlights = !light->is_shadowless && plan_has(plan, FEATURE_HIGHLIGHTS),
-        .makes_caustics = is_refracted,
+        .makes_caustics = is_refracted && !eye->options.has_no_caustics,
         .lights_media = light->lights_media && !light->is_shadowless,
-        .makes_volume = is_refracted && plan->has_volume_focus,
+        .makes_volume = is_refracted && plan->has_volume_focus && !eye->options.has_no_focus,
     };
 }
 

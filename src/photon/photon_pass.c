@@ -220,6 +220,10 @@ static Status make_map(const Tracer *tracer, MapKind kind, const PhotonOptions *
     stats->seconds[PHASE_PHOTON_EMIT] += clock_wall() - started;
     if (status == OK)
         status = emit(&emission, kind, stats, photons);
+    if (kind == MAP_CAUSTIC)
+        maps->has_no_caustics = emission.budget == 0;
+    if (kind == MAP_FOCUS)
+        maps->has_no_focus = emission.budget == 0;
     if (status == OK && !is_first_of_map(tracer_plan(tracer), kind))
         status = build(&emission, stats, photons, map);
     bool is_looked_up =

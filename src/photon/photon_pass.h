@@ -44,6 +44,7 @@ typedef struct PhotonMaps {
     IrradianceMap *irradiance;            /* for final gathering; NULL: not called for */
     double caustic_radius, global_radius; /* gather radii, scene units */
     double caustic_far, global_far;       /* how far a gather may widen that finds too little */
+    bool has_no_caustics, has_no_focus;   /* no light reaches a target: for surfaces, for media */
     PhotonBooks books;
 } PhotonMaps;
 

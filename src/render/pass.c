@@ -170,6 +170,8 @@ static Status fill_film(Pass *pass, Film *film)
                       .global = pass->maps.global,
                       .irradiance = pass->maps.irradiance,
                       .volume = pass->volume,
+                      .has_no_caustics = pass->maps.has_no_caustics,
+                      .has_no_focus = pass->maps.has_no_focus,
                       .caustic_reach = &pass->caustic_reach,
                       .caustic_limits = pass->caustic_limits,
                       .global_limits = pass->global_limits};

@@ -50,7 +50,7 @@ void interiors_enter(Interiors *list, const Interior *interior, uint32_t object)
 {
     if (list->count == INTERIORS_MAX) {
         drop(list, 0);
-        list->is_cut = true;
+        list->left_out++;
     }
     int at = list->count++;
     for (; at > 0 && list->in[at - 1]->priority > interior->priority; at--) {
@@ -117,6 +117,8 @@ static bool leave(const Tracer *tracer, const Passage *passage, Interiors *list,
         return false;
     if (!is_closed)
         return true;
+    if (list->left_out > 0) /* it may be one of these */
+        list->left_out--;
     if (!*from || (*from)->priority <= passage->interior->priority)
         *from = passage->interior;
     return false;
@@ -179,7 +181,7 @@ static bool make_room(Interiors *list, double volumes[INTERIORS_MAX], const Inte
 {
     if (list->count < INTERIORS_MAX)
         return true;
-    list->is_cut = true;
+    list->left_out++;
     if (is_around(interior, size, list->in[0], volumes[0]))
         return false;
     drop(list, 0);
@@ -192,7 +194,7 @@ void interiors_at(const Tracer *tracer, V3 p, Interiors *out)
     double volumes[INTERIORS_MAX];
     out->count = 0;
     out->wavelength = 0;
-    out->is_cut = false;
+    out->left_out = 0;
     for (uint32_t k = 0; k < tracer->clear_count; k++) {
         uint32_t i = tracer->clear[k];
         const Object *object = &tracer->scene->objects[i];

@@ -334,7 +334,7 @@ void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit, const I
     out->has_transmission = fabsf(rgb_grey(out->filter)) > (float)out->settings->adc_bailout;
     if (out->has_transmission) {
         sample_transmission(&s);
-        thread->stats.count[STAT_INTERIORS_CUT] += out->inside_after.is_cut;
+        thread->stats.count[STAT_INTERIORS_CUT] += out->inside_after.left_out > 0;
     }
     out->spectrum = 0;
     if (tracer->has_dispersion && interiors->wavelength == 0)

@@ -96,7 +96,7 @@ enum { INTERIORS_MAX = 32 };
 typedef struct Interiors {
     int count;
     float wavelength; /* nm: of light that was dispersed; 0: all wavelengths together */
-    bool is_cut;      /* there were more: the outermost were left out */
+    int left_out;     /* more that it is inside of, the outermost: there was no room */
     const Interior *in[INTERIORS_MAX];
     uint32_t
         object[INTERIORS_MAX]; /* the surface's object: entering and leaving are paired by it */
@@ -108,7 +108,7 @@ static inline void interiors_copy(Interiors *to, const Interiors *from)
     enum { FEW = 4 };
     to->count = from->count;
     to->wavelength = from->wavelength;
-    to->is_cut = from->is_cut;
+    to->left_out = from->left_out;
     memcpy(to->in, from->in, FEW * sizeof *to->in);
     memcpy(to->object, from->object, FEW * sizeof *to->object);
     if (from->count > FEW) {
