@@ -23,14 +23,19 @@ static void backtrace(Parser *p)
     }
 }
 
-/* At the end of the file: say where what should have been closed was opened. */
+/* At the end of the file, and at a block that fits nowhere: say where what should have been closed
+ * was opened. */
 static void note_open_brace(Parser *p, Span span)
 {
     if (p->frame_count != 1 || p->braces == 0)
         return;
-    const Token *end = frame_top(p)->end;
+    const Token *end = frame_top(p)->end, *at = raw_peek(p);
+    Span opener = p->brace_spans[p->braces - 1];
     if (span.source == end->span.source && span.begin == end->span.begin)
-        diag_note(p->diag, p->brace_spans[p->braces - 1], "this `{` has no `}`");
+        diag_note(p->diag, opener, "this `{` has no `}`");
+    else if (span.begin == at->span.begin && token_is_keyword(at->kind) && at < end &&
+             at[1].kind == TOKEN_LBRACE)
+        diag_note(p->diag, opener, "is the `}` of this `{` missing?");
 }
 
 /* A quote that is missing turns the text around it inside out: if what went wrong stands right
