@@ -4,7 +4,8 @@
  * a piece of work of its own: it reads the cache as it was when the round began, and what the row
  * itself has found; what is new is added in the order of the rows when the round ends.  A last
  * round looks at every pixel for what the picture would not find covered.  The picture then only
- * reads; a point that no record covers gathers for itself.  SPDX-License-Identifier: Apache-2.0 */
+ * reads; a point that no record covers gathers for itself.  What gather rays saw near by is kept
+ * the same way, in a cache of its own.  SPDX-License-Identifier: Apache-2.0 */
 #include "eye/cache_fill.h"
 
 #include "base/mem.h"
@@ -25,6 +26,8 @@ typedef struct Round {
 static void do_row(void *ctx, size_t index, int thread)
 {
     Round *round = ctx;
+    if (!round->rows[index].near)
+        return; /* memory is out */
     EyeThread *eye = round->eyes[thread];
     int width = round->options->width, height = round->options->height, step = round->step;
     int y = (round->first + (int)index * round->stride) * step + step / 2;
@@ -40,23 +43,31 @@ static void do_row(void *ctx, size_t index, int thread)
     eye->fresh = NULL;
 }
 
+/* Add what a row found; returns false when memory is out. */
+static bool take_row(FreshRecords *row, IrradianceCaches *caches)
+{
+    bool is_kept = row->near && !row->is_short && irradiance_cache_join(caches->near, row->near);
+    for (size_t i = 0; i < row->count && is_kept; i++)
+        is_kept = irradiance_cache_add(caches->seen, &row->items[i]);
+    mem_free(row->items);
+    irradiance_cache_free(row->near);
+    return is_kept;
+}
+
 /* Do some rows of a grid and add what they found. */
-static Status do_rows(Round *round, size_t count, int threads, IrradianceCache *cache, Diag *diag)
+static Status do_rows(Round *round, size_t count, int threads, IrradianceCaches *caches, Diag *diag)
 {
     round->rows = mem_array(count + 1, sizeof *round->rows);
     if (!round->rows)
         return diag_no_memory(diag, "the irradiance cache");
+    bool is_kept = true;
+    for (size_t i = 0; i < count; i++)
+        round->rows[i].near = irradiance_cache_new_like(caches->near);
     Status status = work_for(threads, count, do_row, round);
-    for (size_t i = 0; i < count; i++) {
-        FreshRecords *row = &round->rows[i];
-        if (row->is_short && status == OK)
-            status = diag_no_memory(diag, "the irradiance cache");
-        for (size_t k = 0; k < row->count && status == OK; k++)
-            status = irradiance_cache_add(cache, &row->items[k], diag);
-        mem_free(row->items);
-    }
+    for (size_t i = 0; i < count; i++)
+        is_kept = take_row(&round->rows[i], caches) && is_kept;
     mem_free(round->rows);
-    return status;
+    return status == OK && !is_kept ? diag_no_memory(diag, "the irradiance cache") : status;
 }
 
 static int block_size(double part, const EyeOptions *options)
@@ -68,7 +79,7 @@ static int block_size(double part, const EyeOptions *options)
 
 /* All rounds: each grid in two, every other row of it, so that rows beside each other do not both
  * gather the same light. */
-static Status do_rounds(Round *round, const CacheFilling *filling, IrradianceCache *cache,
+static Status do_rounds(Round *round, const CacheFilling *filling, IrradianceCaches *caches,
                         Diag *diag)
 {
     const RadiositySettings *settings =
@@ -82,7 +93,7 @@ static Status do_rounds(Round *round, const CacheFilling *filling, IrradianceCac
         round->step = step;
         round->stride = 2;
         for (round->first = 0; round->first < 2 && round->first < rows; round->first++)
-            TRY(do_rows(round, (size_t)(rows - round->first + 1) / 2, filling->threads, cache,
+            TRY(do_rows(round, (size_t)(rows - round->first + 1) / 2, filling->threads, caches,
                         diag));
         done++;
         if (filling->progress)
@@ -93,35 +104,50 @@ static Status do_rounds(Round *round, const CacheFilling *filling, IrradianceCac
     return OK;
 }
 
-Status irradiance_cache_fill(const Tracer *tracer, const EyeOptions *options,
-                             const CacheFilling *filling, Diag *diag, Stats *stats,
-                             IrradianceCache **out)
+void irradiance_caches_done(IrradianceCaches *caches)
 {
-    *out = NULL;
-    if (!plan_has(tracer_plan(tracer), FEATURE_IRRADIANCE_CACHE))
-        return OK;
+    irradiance_cache_free(caches->seen);
+    irradiance_cache_free(caches->near);
+    *caches = (IrradianceCaches){0};
+}
+
+/* Make empty caches; returns false when memory is out. */
+static bool make_caches(const Tracer *tracer, IrradianceCaches *out)
+{
     double reach = tracer_scene(tracer)->settings.radiosity.error_bound * CACHE_ERROR_UNIT;
     Bound bound = tracer_bound(tracer);
-    IrradianceCache *cache = irradiance_cache_new(bound_center(bound), bound_radius(bound), reach);
+    V3 center = bound_center(bound);
+    out->seen = irradiance_cache_new(center, bound_radius(bound), reach);
+    out->near = irradiance_cache_new(center, bound_radius(bound), NEAR_ERROR * reach);
+    return out->seen && out->near;
+}
+
+Status irradiance_cache_fill(const Tracer *tracer, const EyeOptions *options,
+                             const CacheFilling *filling, Diag *diag, Stats *stats,
+                             IrradianceCaches *out)
+{
+    *out = (IrradianceCaches){0};
+    if (!plan_has(tracer_plan(tracer), FEATURE_IRRADIANCE_CACHE))
+        return OK;
     EyeThread **eyes = mem_array((size_t)filling->threads, sizeof *eyes);
-    Status status = cache && eyes ? OK : diag_no_memory(diag, "the irradiance cache");
+    Status status =
+        eyes && make_caches(tracer, out) ? OK : diag_no_memory(diag, "the irradiance cache");
     EyeOptions own = *options;
-    own.cache = cache;
+    own.cache = out->seen;
+    own.near_cache = out->near;
     int made = 0;
     for (; status == OK && made < filling->threads; made++)
         status = eye_thread_new(tracer, &own, diag, &eyes[made]);
     if (status == OK) {
         Round round = {.options = options, .eyes = eyes};
-        status = do_rounds(&round, filling, cache, diag);
+        status = do_rounds(&round, filling, out, diag);
     }
     for (int i = 0; i < made; i++)
         eye_thread_free(eyes[i], stats);
     mem_free(eyes);
-    if (status == OK) {
-        stats->count[STAT_CACHE_RECORDS] += irradiance_cache_count(cache);
-        *out = cache;
-    } else {
-        irradiance_cache_free(cache);
-    }
+    if (status == OK)
+        stats->count[STAT_CACHE_RECORDS] += irradiance_cache_count(out->seen);
+    else
+        irradiance_caches_done(out);
     return status;
 }

@@ -12,11 +12,17 @@ typedef struct CacheFilling {
     void *progress_ctx;
 } CacheFilling;
 
-/* Fill a new cache for the picture that `options` are for: from coarse to fine, every round reads
+/* The cache of a picture, and that of what the gather rays of its points saw near by. */
+typedef struct IrradianceCaches {
+    IrradianceCache *seen, *near;
+} IrradianceCaches;
+void irradiance_caches_done(IrradianceCaches *caches);
+
+/* Fill new caches for the picture that `options` are for: from coarse to fine, every round reads
  * what the rounds before have found, so that the result is the same for any number of threads.
- * *out stays NULL if the plan has no cache.  ERR_MEMORY, ERR_INTERRUPTED or OK. */
+ * *out stays empty if the plan has no cache.  ERR_MEMORY, ERR_INTERRUPTED or OK. */
 Status irradiance_cache_fill(const Tracer *tracer, const EyeOptions *options,
                              const CacheFilling *filling, Diag *diag, Stats *stats,
-                             IrradianceCache **out);
+                             IrradianceCaches *out);
 
 #endif

@@ -32,6 +32,7 @@ typedef struct PathKeys {
 typedef struct FreshRecords {
     struct IrradianceRecord *items;
     size_t count, capacity;
+    struct IrradianceCache *near; /* those where gather rays saw what is near by */
     bool is_last;  /* what the picture would use is enough: the rest is made up for */
     bool is_short; /* memory ran out */
 } FreshRecords;
@@ -46,6 +47,8 @@ struct EyeThread {
     int light_count;
     bool has_air; /* media, fog or rainbows */
     CameraRays camera;
+    double pixel, pixel_angle;  /* width of a pixel: scene units, and more of them per scene unit
+                                   of distance */
     bool has_eye_point;         /* all camera rays start at one point */
     Interiors camera_interiors; /* around that point */
     double *blur_limits;        /* variance of the mean below which n rays are enough */

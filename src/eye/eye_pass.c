@@ -66,6 +66,15 @@ static Status make_blur(EyeThread *eye, Diag *diag)
     return OK;
 }
 
+/* Measure a pixel in the middle of the film. */
+static void set_pixel(EyeThread *eye, int width, int height)
+{
+    Ray a = camera_ray(&eye->camera, 0.5 * width, 0.5 * height);
+    Ray b = camera_ray(&eye->camera, 0.5 * width + 1, 0.5 * height);
+    eye->pixel = v3_dist(a.o, b.o);
+    eye->pixel_angle = v3_dist(a.d, b.d);
+}
+
 Status eye_thread_new(const Tracer *tracer, const EyeOptions *options, Diag *diag, EyeThread **out)
 {
     EyeThread *eye = mem_alloc(sizeof *eye);
@@ -95,6 +104,7 @@ Status eye_thread_new(const Tracer *tracer, const EyeOptions *options, Diag *dia
     const Camera *camera = &eye->scene->camera;
     camera_rays_init(&eye->camera, camera, options->width, options->height);
     eye->has_eye_point = camera->kind == CAMERA_PERSPECTIVE && !eye->blur_limits;
+    set_pixel(eye, options->width, options->height);
     if (eye->has_eye_point)
         interiors_at(tracer, camera->location, &eye->camera_interiors);
     *out = eye;

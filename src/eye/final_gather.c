@@ -25,11 +25,12 @@
 enum {
     CELLS_MAX = 4096,
     ROWS_MAX = 64,
-    GUIDED_PART = 3,    /* one in so many rays goes where photons came from */
-    GUIDE_PHOTONS = 64, /* looked at for that */
-    NEAR_RAYS = 24,     /* of the small gathering */
-    CHAIN_MAX = 64,     /* mirrors and panes a ray may pass */
-    CHAIN_SURE = 4,     /* and those before the dice are thrown for going on at all */
+    GUIDED_PART = 3,     /* one in so many rays goes where photons came from */
+    GUIDE_PHOTONS = 64,  /* looked at for that */
+    NEAR_RAYS = 24,      /* of the small gathering */
+    NEAR_RAYS_KEPT = 64, /* if it serves other rays too */
+    CHAIN_MAX = 64,      /* mirrors and panes a ray may pass */
+    CHAIN_SURE = 4,      /* and those before the dice are thrown for going on at all */
     FEW_RAYS = 4
 };
 
@@ -75,22 +76,34 @@ static void gather_at(EyeThread *eye, const ShapePoint *at, V3 n, const Interior
 
 /* --- what a ray brings --------------------------------------------------------------------- */
 
+/* The light of other surfaces that arrives at a side of one: another ray may have asked for it. */
+static Rgb irradiance_nearby(EyeThread *eye, const SurfaceSample *s, V3 n, const Interiors *inside,
+                             int depth)
+{
+    Rgb kept;
+    GatheredLight gathered;
+    if (nearby_light_read(eye, s->at.p, n, &kept))
+        return kept;
+    gather_at(eye, &s->at, n, inside, eye->fresh ? NEAR_RAYS_KEPT : NEAR_RAYS, depth + 1,
+              &gathered);
+    nearby_light_keep(eye, s->at.p, n, &gathered);
+    return gathered.irradiance;
+}
+
 /* What a surface sends on of the light that comes to it, found anew instead of looked up. */
 static Rgb light_nearby(EyeThread *eye, const SurfaceSample *s, const Interiors *inside,
                         Rgb diffuse, Rgb back, int depth)
 {
-    GatheredLight gathered;
     Rgb light = RGB_BLACK;
     if (plan_has(eye->plan, FEATURE_LIGHTS))
         light = direct_light(eye, s, false);
     if (eye->options.caustic)
         light = rgb_add(light, caustic_light(eye, s));
-    gather_at(eye, &s->at, s->ng, inside, NEAR_RAYS, depth + 1, &gathered);
-    light = rgb_add(light, rgb_mul(diffuse, gathered.irradiance));
+    light = rgb_add(light, rgb_mul(diffuse, irradiance_nearby(eye, s, s->ng, inside, depth)));
     if (rgb_is_black(back))
         return light;
-    gather_at(eye, &s->at, v3_neg(s->ng), inside, NEAR_RAYS, depth + 1, &gathered);
-    return rgb_add(light, rgb_mul(back, gathered.irradiance));
+    Rgb behind = irradiance_nearby(eye, s, v3_neg(s->ng), inside, depth);
+    return rgb_add(light, rgb_mul(back, behind));
 }
 
 /* The light that arrives at a side of a surface: looked up, or in one of many passes from the
@@ -417,7 +430,7 @@ static void gather_at(EyeThread *eye, const ShapePoint *at, V3 n, const Interior
         guide(&cells, eye, at, guided);
     for (int i = 0; i < cells.rows * cells.columns; i++)
         gather_cell(&cells, eye, at, ng, inside, i, depth);
-    sum_cells(&cells, depth == 0, out);
+    sum_cells(&cells, depth == 0 || eye->fresh, out);
 }
 
 void final_gather(EyeThread *eye, const ShapePoint *at, V3 n, const Interiors *inside, int rays,

@@ -28,4 +28,11 @@ void final_gather(EyeThread *eye, const ShapePoint *at, V3 n, const Interiors *i
  * the hemisphere evenly. */
 Rgb final_gather_few(EyeThread *eye, const ShapePoint *at, V3 n, const Interiors *inside);
 
+/* Look up the irradiance where a gather ray saw a surface near by; returns false if no record holds
+ * there.  n: unit, the side that is seen. */
+bool nearby_light_read(EyeThread *eye, V3 p, V3 n, Rgb *light);
+
+/* Keep what was gathered there for other gather rays, while the irradiance cache is filled. */
+void nearby_light_keep(EyeThread *eye, V3 p, V3 n, const GatheredLight *light);
+
 #endif

@@ -11,6 +11,9 @@ enum {
     RAYS_MIN = 8
 };
 
+/* How far a record reaches at least, in pixels. */
+#define PIXEL_REACH 1
+
 static void keep_record(EyeThread *eye, const IrradianceRecord *record)
 {
     FreshRecords *fresh = eye->fresh;
@@ -23,6 +26,26 @@ static void keep_record(EyeThread *eye, const IrradianceRecord *record)
     fresh->items[fresh->count++] = *record;
 }
 
+/* The least radius of a record.  What reaches less than a pixel would be gathered for one sample of
+ * the picture alone. */
+static double least_radius(const EyeThread *eye, double far)
+{
+    const RadiositySettings *settings = &eye->scene->settings.radiosity;
+    double pixel = eye->pixel + eye->pixel_angle * far;
+    double error = settings->error_bound * CACHE_ERROR_UNIT;
+    return fmax(settings->minimum_reuse * far, PIXEL_REACH * pixel / error);
+}
+
+/* Make a record of what was gathered at a point. */
+static IrradianceRecord make_record(const EyeThread *eye, V3 p, V3 n, const GatheredLight *light)
+{
+    const RadiositySettings *settings = &eye->scene->settings.radiosity;
+    double far = v3_dist(p, eye->scene->camera.location), least = least_radius(eye, far);
+    IrradianceRecord record;
+    irradiance_record_init(&record, p, n, light, least, fmax(least, settings->maximum_reuse * far));
+    return record;
+}
+
 static Rgb gather_point(EyeThread *eye, const SurfaceSample *s, V3 n, const Interiors *inside,
                         bool is_faint)
 {
@@ -31,10 +54,7 @@ static Rgb gather_point(EyeThread *eye, const SurfaceSample *s, V3 n, const Inte
     GatheredLight light;
     final_gather(eye, &s->at, n, inside, rays < RAYS_MIN ? RAYS_MIN : rays, &light);
     if (eye->fresh) {
-        double far = v3_dist(s->at.p, eye->scene->camera.location);
-        IrradianceRecord record;
-        irradiance_record_init(&record, s->at.p, n, &light, settings->minimum_reuse * far,
-                               settings->maximum_reuse * far);
+        IrradianceRecord record = make_record(eye, s->at.p, n, &light);
         keep_record(eye, &record);
     }
     return light.irradiance;
@@ -68,6 +88,32 @@ static Rgb irradiance_seen(EyeThread *eye, const SurfaceSample *s, V3 n, const I
     if (read.count >= needed && read.weight > 0)
         return cache_read_irradiance(&read);
     return gather_point(eye, s, n, inside, is_faint);
+}
+
+bool nearby_light_read(EyeThread *eye, V3 p, V3 n, Rgb *light)
+{
+    if (!eye->options.cache)
+        return false;
+    double error = eye->scene->settings.radiosity.error_bound * CACHE_ERROR_UNIT;
+    CacheRead read = {.p = p, .n = n, .error = error};
+    irradiance_cache_read(eye->options.cache, &read);
+    if (!(read.weight > 0)) {
+        read.error = NEAR_ERROR * error;
+        irradiance_cache_read(eye->options.near_cache, &read);
+        if (eye->fresh)
+            irradiance_cache_read(eye->fresh->near, &read);
+    }
+    *light = cache_read_irradiance(&read);
+    return read.weight > 0;
+}
+
+void nearby_light_keep(EyeThread *eye, V3 p, V3 n, const GatheredLight *light)
+{
+    if (!eye->fresh)
+        return;
+    IrradianceRecord record = make_record(eye, p, n, light);
+    if (!irradiance_cache_add(eye->fresh->near, &record))
+        eye->fresh->is_short = true;
 }
 
 Rgb gathered_light(EyeThread *eye, const SurfaceSample *s, const Interiors *inside, float weight)

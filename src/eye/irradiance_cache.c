@@ -132,6 +132,11 @@ IrradianceCache *irradiance_cache_new(V3 center, double radius, double reach)
     return cache;
 }
 
+IrradianceCache *irradiance_cache_new_like(const IrradianceCache *other)
+{
+    return irradiance_cache_new(other->center, other->unit, other->reach);
+}
+
 void irradiance_cache_free(IrradianceCache *cache)
 {
     if (!cache)
@@ -202,14 +207,14 @@ static bool add_entry(IrradianceCache *cache, const Entry *entry)
     return true;
 }
 
-Status irradiance_cache_add(IrradianceCache *cache, const IrradianceRecord *record, Diag *diag)
+bool irradiance_cache_add(IrradianceCache *cache, const IrradianceRecord *record)
 {
     double reach = record->radius * cache->reach;
     int level = level_of(cache, reach);
     int64_t low[3], high[3];
     void *records = cache->records;
     if (mem_grow(&records, cache->record_count, &cache->record_capacity, sizeof *record) != 0)
-        return diag_no_memory(diag, "the irradiance cache");
+        return false;
     cache->records = records;
     cache->records[cache->record_count] = *record;
     cell_at(cache, record->p, level, -reach, low);
@@ -223,11 +228,19 @@ Status irradiance_cache_add(IrradianceCache *cache, const IrradianceRecord *reco
             is_new = is_new && !(is_high && high[axis] == low[axis]);
         }
         if (is_new && !add_entry(cache, &entry))
-            return diag_no_memory(diag, "the irradiance cache");
+            return false;
     }
     cache->level_records[level]++;
     cache->record_count++;
-    return OK;
+    return true;
+}
+
+bool irradiance_cache_join(IrradianceCache *cache, const IrradianceCache *other)
+{
+    for (size_t i = 0; i < other->record_count; i++)
+        if (!irradiance_cache_add(cache, &other->records[i]))
+            return false;
+    return true;
 }
 
 void irradiance_cache_read(const IrradianceCache *cache, CacheRead *read)

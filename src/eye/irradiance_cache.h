@@ -7,12 +7,15 @@
 #ifndef PMS_EYE_IRRADIANCE_CACHE_H
 #define PMS_EYE_IRRADIANCE_CACHE_H
 
-#include "base/diag.h"
 #include "eye/final_gather.h"
 
 /* error_bound is in units in which the language's default gives a good picture; so much of it is
  * the error bound here. */
 #define CACHE_ERROR_UNIT 0.25
+
+/* What gather rays see near by is read with an error so many times as large: many of them are added
+ * up. */
+#define NEAR_ERROR 2
 
 typedef struct IrradianceRecord {
     V3 p, n;       /* n unit, the side it is for */
@@ -44,11 +47,15 @@ typedef struct IrradianceCache IrradianceCache;
 /* Make an empty cache for a scene around `center`, of `radius` scene units; `reach` is the largest
  * error records will be read with.  NULL when memory is out.  Free with irradiance_cache_free. */
 IrradianceCache *irradiance_cache_new(V3 center, double radius, double reach);
+IrradianceCache *irradiance_cache_new_like(const IrradianceCache *other);
 void irradiance_cache_free(IrradianceCache *cache);
 size_t irradiance_cache_count(const IrradianceCache *cache);
 
-/* Add a record.  ERR_MEMORY or OK.  Nothing may read meanwhile. */
-Status irradiance_cache_add(IrradianceCache *cache, const IrradianceRecord *record, Diag *diag);
+/* Add a record; returns false when memory is out.  Nothing may read meanwhile. */
+bool irradiance_cache_add(IrradianceCache *cache, const IrradianceRecord *record);
+
+/* Add the records of another cache, in its order.  As irradiance_cache_add. */
+bool irradiance_cache_join(IrradianceCache *cache, const IrradianceCache *other);
 
 /* Add all records that hold at read->p to a read.  Any thread. */
 void irradiance_cache_read(const IrradianceCache *cache, CacheRead *read);

@@ -24,7 +24,7 @@ typedef struct Pass {
     PhotonReach caustic_reach;
     VolumeIndex *volume;
     GatherLimits caustic_limits, global_limits;
-    IrradianceCache *cache;
+    IrradianceCaches caches;
 } Pass;
 
 /* --- photons -------------------------------------------------------------------------------- */
@@ -150,9 +150,10 @@ static Status fill_cache(Pass *pass, EyeOptions *eye)
                             .progress = options->progress ? cache_progress : NULL,
                             .progress_ctx = (void *)(uintptr_t)options};
     Status status =
-        irradiance_cache_fill(pass->tracer, eye, &filling, pass->diag, pass->stats, &pass->cache);
+        irradiance_cache_fill(pass->tracer, eye, &filling, pass->diag, pass->stats, &pass->caches);
     pass->stats->seconds[PHASE_IRRADIANCE] += clock_wall() - started;
-    eye->cache = pass->cache;
+    eye->cache = pass->caches.seen;
+    eye->near_cache = pass->caches.near;
     return status;
 }
 
@@ -202,7 +203,7 @@ Status pass_render(const Tracer *tracer, const PassOptions *options, Diag *diag,
         out->books = pass.maps.books;
         pass.maps.books = (PhotonBooks){0};
     }
-    irradiance_cache_free(pass.cache);
+    irradiance_caches_done(&pass.caches);
     volume_index_free(pass.volume);
     photon_reach_done(&pass.caustic_reach);
     photon_maps_done(&pass.maps);

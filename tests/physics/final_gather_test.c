@@ -336,6 +336,37 @@ static void glass_in_few_photons(void **state)
     picture_done(&picture);
 }
 
+/* A room with a window on a plain without end, which takes most of the photons: in the room their
+ * estimates are as large as it is, and all that gather rays meet is near.  What they ask for there
+ * is kept, and what no pixel's centre shows is covered by what is a pixel away. */
+static void light_nearby_is_kept(void **state)
+{
+    (void)state;
+    const char *text =
+        "#version 3.7;\n"
+        "global_settings { assumed_gamma 1 pms { global_photons 20000 } }\n"
+        "#default { finish { ambient 0 diffuse 0.8 } }\n"
+        "camera { location <0,1.5,-1.9> look_at <0.3,1.1,2> angle 80 right x up y }\n"
+        "light_source { <14,18,4>, rgb 9 parallel point_at <0,0,0.8> }\n"
+        "sky_sphere { pigment { rgb <0.3,0.45,0.8> } }\n"
+        "difference { box { <-2.05,-0.05,-2.05>, <2.05,3.05,2.05> }\n"
+        "  box { <-2,0,-2>, <2,3,2> } box { <1.5,1,0>, <2.5,2.2,1.5> } pigment { rgb 0.85 } }\n"
+        "sphere { <0.5,0.4,0.8>, 0.4 pigment { rgb 0.9 } }\n"
+        "plane { y, -0.05 pigment { rgb <0.3,0.5,0.2> } }\n";
+    Picture picture;
+    make_picture(&picture, text, by_cache, 2, 1, 9);
+    const uint64_t *count = picture.result.stats.count;
+    print_message("# %llu points for %llu records, %llu of %llu reads missed\n",
+                  (unsigned long long)count[STAT_FINAL_GATHERS],
+                  (unsigned long long)count[STAT_CACHE_RECORDS],
+                  (unsigned long long)count[STAT_CACHE_MISSES],
+                  (unsigned long long)count[STAT_CACHE_READS]);
+    assert_true(count[STAT_CACHE_RECORDS] > 100);
+    assert_true(count[STAT_FINAL_GATHERS] < 5 * count[STAT_CACHE_RECORDS]);
+    assert_true(25 * count[STAT_CACHE_MISSES] < count[STAT_CACHE_READS]);
+    picture_done(&picture);
+}
+
 /* The books of what glows balance too. */
 static void books_of_glow_balance(void **state)
 {
@@ -393,6 +424,7 @@ int main(void)
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(few_photons),
         cmocka_unit_test(glass_in_few_photons),
+        cmocka_unit_test(light_nearby_is_kept),
         cmocka_unit_test(books_of_glow_balance),
     };
     return cmocka_run_group_tests_name("final_gather", tests, NULL, NULL);
