@@ -4,7 +4,6 @@
 
 #include "base/mem.h"
 #include "photon/emission_int.h"
-#include "photon/faint_int.h"
 #include "photon/gather.h"
 
 #include <string.h>
@@ -243,20 +242,25 @@ static Status make_map(const Tracer *tracer, MapKind kind, const PhotonOptions *
 /* How far a gather widens beyond its radius at least. */
 #define WIDEN 3
 
-/* Return the radius at which a photon of mean power is too faint to be a speck. */
+/* Return the radius at which a photon of mean power is too faint to be a speck.  Lamps that no
+ * photon comes from do not count: they may light nothing that is seen. */
 static double speck_radius(const Tracer *tracer, const PhotonMap *map, const LightBooks *books)
 {
     const Scene *scene = tracer_scene(tracer);
     Rgb flux = RGB_BLACK;
     uint64_t stored = 0;
+    double lamp = 0;
     for (int i = 0; i < scene->light_count; i++) {
+        const Light *light = &scene->lights[i];
+        if (books[i].stored == 0)
+            continue;
+        double far = v3_dist(light->location, photon_map_center(map));
+        lamp = fmax(lamp, (double)rgb_max(light->color) * light_fade(light, far));
         flux = rgb_add(flux, books[i].flux_stored);
         stored += books[i].stored;
     }
-    if (stored == 0)
-        return 0;
-    double mean = (double)rgb_max(flux) / (double)stored;
-    return faint_radius(scene, photon_map_center(map), mean, FAINT_PHOTON);
+    double mean = stored > 0 ? (double)rgb_max(flux) / (double)stored : 0;
+    return lamp > 0 ? sqrt(mean / (lamp * FAINT_PHOTON * PMS_PI)) : 0;
 }
 
 static void set_radii(const Tracer *tracer, PhotonMaps *maps)

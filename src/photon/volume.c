@@ -4,7 +4,6 @@
 
 #include "base/mem.h"
 #include "base/work.h"
-#include "photon/faint_int.h"
 #include "photon/gather.h"
 #include "photon/photon_map_int.h"
 #include "trace/media_along.h"
@@ -13,9 +12,6 @@
 
 enum { STACK_MAX = 80, CHUNK_BLOCKS = 64 };
 
-/* Photons of a block that tell how bright all of them are. */
-enum { TRIED_PHOTONS = 4 };
-
 /* The kernel in the middle of the disk, over its mean. */
 #define KERNEL_MOST 2
 
@@ -23,13 +19,16 @@ enum { TRIED_PHOTONS = 4 };
  * it meets them over the way beside. */
 #define STEEP_MOST 8
 
-/* A photon that gives a ray less than this part of the light of the brightest lamp is not seen at
- * all: it is less than half the first step of a picture of 8 bits (IEC 61966-2-1). */
+/* A photon that gives a ray less than this part of what photons together give rays in a common
+ * place is not seen at all: half the first step of a picture of 8 bits (IEC 61966-2-1). */
 #define FAINT_PART (0.5 / (255 * 12.92))
 
-/* Where there is no lamp, a ball is at most this many times as wide as where photons are of common
- * density: one photon in it gives 1/200 of what a ray gets in such a place. */
-#define FAR_RADII 3
+/* However faint, a photon is spread over this part of the common radius. */
+#define LEAST_PART 0.25
+
+/* The photons of a ball lie within its radius of a ray through its middle, on a way of two radii: a
+ * ray meets so many times those of the ball. */
+#define TUBE_PART 1.5
 
 /* Rounding of where a ray enters and leaves a box. */
 #define BOX_SLACK 0x1p-20f
@@ -47,13 +46,18 @@ struct VolumeIndex {
 
 /* --- making ------------------------------------------------------------------------------- */
 
+/* The light that photons of a block give a ray, times the area it is spread over. */
+typedef struct BlockLight {
+    float most, mean; /* of a photon, largest channel */
+} BlockLight;
+
 typedef struct IndexWork {
     VolumeIndex *index;
     const Tracer *tracer;
     GatherScratch **scratch; /* per thread */
     int nearest;
-    double radius; /* 0: from the density, */
-    double far;    /* at most this, where no lamp tells what can be seen */
+    double radius;      /* 0: from the density */
+    BlockLight *lights; /* per block; NULL: all balls have one radius */
 } IndexWork;
 
 static V3 block_center(const PhotonBlock *block)
@@ -92,14 +96,13 @@ static Rgb lane_power(const PhotonBlock *block, int i)
     return rgbe_decode(bytes);
 }
 
-/* Return the light that one of a block's photons gives a ray, times the area it is spread over: the
- * mean of a few, all in the media of the first. */
-static double light_of_photon(const Tracer *tracer, const PhotonMap *map, const PhotonBlock *block)
+/* All photons of a block are taken to be in the media of the first. */
+static BlockLight block_light(const Tracer *tracer, const PhotonMap *map, const PhotonBlock *block)
 {
-    Rgb sum = RGB_BLACK;
+    BlockLight light = {0};
     MediaHere here;
     int count = 0;
-    for (int i = 0; i < BLOCK_PHOTONS; i += BLOCK_PHOTONS / TRIED_PHOTONS) {
+    for (int i = 0; i < BLOCK_PHOTONS; i++) {
         V3 at = v3((double)block->pos[0][i], (double)block->pos[1][i], (double)block->pos[2][i]);
         if (!v3_is_finite(at))
             continue;
@@ -111,28 +114,11 @@ static double light_of_photon(const Tracer *tracer, const PhotonMap *map, const 
             media_here(tracer, &inside, &here);
         }
         media_at(&here, p, &point);
-        sum = rgb_add(sum, rgb_mul(point.scattering, lane_power(block, i)));
+        float its = rgb_max(rgb_mul(point.scattering, lane_power(block, i)));
+        light.most = fmaxf(light.most, its);
+        light.mean += (its - light.mean) / (float)count;
     }
-    return count > 0 ? (double)rgb_max(sum) / count : 0;
-}
-
-/* Return the radius beyond which light of a block need not be spread. */
-static double most_radius(const IndexWork *work, const PhotonBlock *block)
-{
-    const PhotonMap *map = work->index->map;
-    double light = KERNEL_MOST * light_of_photon(work->tracer, map, block);
-    double faint = faint_radius(tracer_scene(work->tracer), map->center, light, FAINT_PART);
-    return faint > 0 ? faint : work->far;
-}
-
-static float block_radius(const IndexWork *work, const PhotonBlock *block, GatherScratch *scratch)
-{
-    const PhotonMap *map = work->index->map;
-    if (work->radius > 0)
-        return (float)work->radius;
-    V3 p = v3_add(map->center, block_center(block));
-    double radius = radius_around(map, p, work->nearest, scratch);
-    return (float)fmin(radius, most_radius(work, block));
+    return light;
 }
 
 static void find_radii(void *ctx, size_t chunk, int thread)
@@ -140,8 +126,33 @@ static void find_radii(void *ctx, size_t chunk, int thread)
     IndexWork *work = ctx;
     const PhotonMap *map = work->index->map;
     uint32_t first = (uint32_t)chunk * CHUNK_BLOCKS, end = first + CHUNK_BLOCKS;
-    for (uint32_t i = first; i < end && i < map->block_count; i++)
-        work->index->radius[i] = block_radius(work, &map->blocks[i], work->scratch[thread]);
+    for (uint32_t i = first; i < end && i < map->block_count; i++) {
+        const PhotonBlock *block = &map->blocks[i];
+        V3 p = v3_add(map->center, block_center(block));
+        work->index->radius[i] =
+            work->lights ? (float)radius_around(map, p, work->nearest, work->scratch[thread])
+                         : (float)work->radius;
+        if (work->lights)
+            work->lights[i] = block_light(work->tracer, map, block);
+    }
+}
+
+/* Limit the radii to where light can be seen.
+ *
+ * The light to compare with is that of the photons themselves where they are of common density:
+ * what lamps would send there tells nothing, as they may be turned away or behind walls. */
+static void limit_radii(const IndexWork *work)
+{
+    const PhotonMap *map = work->index->map;
+    double sum = 0, common = photon_map_radius(map, BLOCK_PHOTONS);
+    for (uint32_t i = 0; i < map->block_count; i++)
+        sum += (double)work->lights[i].mean;
+    double around = TUBE_PART * BLOCK_PHOTONS * sum / map->block_count;
+    for (uint32_t i = 0; around > 0 && i < map->block_count; i++) {
+        double light = KERNEL_MOST * (double)work->lights[i].most;
+        double most = common * fmax(sqrt(light / (around * FAINT_PART)), LEAST_PART);
+        work->index->radius[i] = fminf(work->index->radius[i], (float)most);
+    }
 }
 
 static VolumeBox block_box(const PhotonBlock *block, float radius)
@@ -199,10 +210,15 @@ Status volume_index_new(const Tracer *tracer, const PhotonMap *map, int nearest,
     Status status = index->boxes && index->radius && make_scratch(&work, threads)
                         ? OK
                         : diag_no_memory(diag, "photons in media");
-    if (!(radius > 0))
-        work.far = FAR_RADII * volume_radius(map, nearest);
+    if (status == OK && !(radius > 0)) {
+        work.lights = mem_array((size_t)blocks + 1, sizeof *work.lights);
+        status = work.lights ? OK : diag_no_memory(diag, "photons in media");
+    }
     if (status == OK)
         status = work_for(threads, (blocks + CHUNK_BLOCKS - 1) / CHUNK_BLOCKS, find_radii, &work);
+    if (status == OK && work.lights)
+        limit_radii(&work);
+    mem_free(work.lights);
     if (status == OK)
         fill_boxes(index);
     for (int i = 0; work.scratch && i < threads; i++)

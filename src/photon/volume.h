@@ -16,7 +16,7 @@ typedef struct VolumeIndex VolumeIndex;
 
 /* Make the index of a map that holds photons of media, which must outlive it.
  *
- * tracer   of the scene, for its lamps and media.
+ * tracer   of the scene, for its media.
  * nearest  photons in the ball around each.
  * radius   of all balls, scene units; 0: from the density.
  *

@@ -41,4 +41,14 @@ alike other plain 0.02
 [ $said -ne 0 ] && [ "$code" -eq 1 ]
 ok $? "a full one, when another lamp reaches it"
 
+inside='light_source { <0,3.5,0> 1 photons { refraction on } }'
+away='spotlight point_at <0,40,0> radius 5 falloff 6'
+picture one "$target" "$inside"
+for photons in off on; do
+    picture more "$target" "$inside light_source { <0,20,0> 1e6 $away
+        photons { refraction $photons reflection $photons } }"
+    alike more one 1e-4
+    ok "$code" "a bright lamp turned away, its photons $photons, changes nothing"
+done
+
 plan

@@ -431,18 +431,20 @@ static int photons_on_ray(const VolumeIndex *index, double x)
     return count;
 }
 
-/* Photons in two heaps, far apart: the nearest of most of one lie in the other. */
-static PhotonMap *two_heaps(LitScene *lit, double apart, float power)
+/* Photons in two heaps, far apart: the nearest of most of one lie in the other.  `power` by heap.
+ */
+static PhotonMap *two_heaps(LitScene *lit, double apart, const double power[2])
 {
-    enum { HEAP = 20 };
+    enum { HEAP = 32 }; /* whole blocks */
     Photon *photons = mem_array(2 * HEAP, sizeof *photons);
     PhotonMap *map;
     Rng rng = rng_at(5, 0, 0);
     for (int i = 0; i < 2 * HEAP; i++) {
         V3 at = warp_sphere((V2){rng_double(&rng), rng_double(&rng)});
         at = v3_mad(v3(i < HEAP ? 0 : apart, 0, 0), 0.1, at);
+        float its = (float)power[i / HEAP];
         photons[i] = (Photon){.pos = {(float)at.x, (float)at.y, (float)at.z}};
-        rgbe_encode(rgb(power, power, power), &rng, photons[i].rgbe);
+        rgbe_encode(rgb(its, its, its), &rng, photons[i].rgbe);
         direction_encode(v3(0, 1, 0), &photons[i].phi, &photons[i].theta);
     }
     assert_int_equal(photon_map_new(&lit->diag, photons, 2 * HEAP, v3(0, 0, 0), 1, &map), OK);
@@ -450,28 +452,85 @@ static PhotonMap *two_heaps(LitScene *lit, double apart, float power)
 }
 
 /* A photon is spread no further than where it gives half the first step of a picture of 8 bits,
- * 0.5/255/12.92, of the light of a lamp of 1: in smoke that scatters s, as far as r with
- * 2 s power / (pi r^2) that part.  Between two heaps of photons it is dark then. */
+ * 0.5/255/12.92, of what rays get where photons are of common density: with 16 photons, of light p
+ * each, within R of one, these send the ray through it 1.5 16 p / (pi R^2), and one alone, spread
+ * over r, at most 2 p / (pi r^2).  However bright all are, and whatever lamps there are elsewhere;
+ * but those of a brighter heap go further.  Between two heaps it is dark. */
 static void no_glow_where_no_light_goes(void **state)
 {
     (void)state;
-    const double scattering = 0.5, part = 0.5 / 255 / 12.92, apart = 10;
-    const double powers[] = {1e-3, 1e-2};
-    for (int i = 0; i < 2; i++) {
+    const double part = 0.5 / 255 / 12.92, apart = 10;
+    const struct {
+        const char *lamp;
+        double powers[2];
+    } cases[] = {
+        {"light_source { <0,4,0> 1 }", {1e-3, 1e-3}},
+        {"light_source { <0,4,0> 1 }", {1, 1}},
+        {"light_source { <0,4,0> 1e6 }", {1e-3, 1e-3}},
+        {"", {1e-3, 1e-3}},
+        {"", {1e-3, 3e-3}},
+        {"", {1e-3, 4e-4}},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         LitScene lit;
-        lit_read(&lit,
-                 HEAD "}\n" EYE "light_source { <0,4,0> 1 }\nmedia { scattering { 1, 0.5 } }\n", 1,
-                 1);
-        PhotonMap *map = two_heaps(&lit, apart, (float)powers[i]);
+        char text[512];
+        snprintf(text, sizeof text, HEAD "}\n" EYE "%s\nmedia { scattering { 1, 0.5 } }\n",
+                 cases[i].lamp);
+        lit_read(&lit, text, 1, 1);
+        const double *powers = cases[i].powers, mean = (powers[0] + powers[1]) / 2;
+        PhotonMap *map = two_heaps(&lit, apart, powers);
         VolumeIndex *index;
-        assert_int_equal(volume_index_new(lit.tracer, map, NEAREST, 0, 1, &lit.diag, &index), OK);
-        double reach = sqrt(2 * scattering * powers[i] / (PMS_PI * part));
+        assert_int_equal(volume_index_new(lit.tracer, map, NEAREST + 10, 0, 1, &lit.diag, &index),
+                         OK);
+        double common = photon_map_radius(map, 16);
+        double reach = common * sqrt(2 * powers[0] / (1.5 * 16 * mean * part));
         assert_true(reach > 1 && reach + 0.2 < apart);
-        assert_int_equal(photons_on_ray(index, 0), 20);
-        assert_int_equal(photons_on_ray(index, -0.95 * reach + 0.1), 20);
+        assert_int_equal(photons_on_ray(index, 0), 32);
+        assert_int_equal(photons_on_ray(index, -0.95 * reach + 0.1), 32);
         assert_int_equal(photons_on_ray(index, -1.05 * reach - 0.1), 0);
-        if (2 * (reach + 0.2) < apart)
+        if (powers[0] == powers[1] && 2 * (reach + 0.2) < apart)
             assert_int_equal(photons_on_ray(index, apart / 2), 0);
+        volume_index_free(index);
+        photon_map_free(map);
+        lit_done(&lit);
+    }
+}
+
+/* A block of photons in a row, one of which is bright, and far off a heap of such bright ones. */
+static PhotonMap *row_and_heap(LitScene *lit, int bright)
+{
+    enum { ROW = 16, ALL = 8 * ROW };
+    Photon *photons = mem_array(ALL, sizeof *photons);
+    PhotonMap *map;
+    Rng rng = rng_at(5, 0, 0);
+    for (int i = 0; i < ALL; i++) {
+        V3 at = warp_sphere((V2){rng_double(&rng), rng_double(&rng)});
+        at = i < ROW ? v3(0.5 * i, 0, 0) : v3_mad(v3(90, 0, 0), 0.1, at);
+        float power = i < ROW && i != bright ? 1e-9f : 1e-3f;
+        photons[i] = (Photon){.pos = {(float)at.x, (float)at.y, (float)at.z}};
+        rgbe_encode(rgb(power, power, power), &rng, photons[i].rgbe);
+        direction_encode(v3(0, 1, 0), &photons[i].phi, &photons[i].theta);
+    }
+    assert_int_equal(photon_map_new(&lit->diag, photons, ALL, v3(0, 0, 0), 1, &map), OK);
+    return map;
+}
+
+/* One photon of a block may be far brighter than the others: it goes as far as its light asks for,
+ * so that it is no speck, whichever it is. */
+static void the_brightest_of_a_block_counts(void **state)
+{
+    (void)state;
+    for (int bright = 0; bright < 16; bright++) {
+        LitScene lit;
+        VolumeIndex *index;
+        lit_read(&lit, HEAD "}\n" EYE "media { scattering { 1, 0.5 } }\n", 1, 1);
+        PhotonMap *map = row_and_heap(&lit, bright);
+        assert_int_equal(volume_index_new(lit.tracer, map, NEAREST / 2, 0, 1, &lit.diag, &index),
+                         OK);
+        double reach = photon_map_radius(map, 16) * sqrt(2 / (1.5 * 16 * (0.5 / 255 / 12.92)));
+        assert_true(reach > 1 && reach < 3);
+        assert_true(photons_on_ray(index, -0.9 * reach) > 0);
+        assert_int_equal(photons_on_ray(index, -1.1 * reach), 0);
         volume_index_free(index);
         photon_map_free(map);
         lit_done(&lit);
@@ -490,6 +549,7 @@ int main(void)
         cmocka_unit_test(extreme_media_end),
         cmocka_unit_test(threads_do_not_matter),
         cmocka_unit_test(no_glow_where_no_light_goes),
+        cmocka_unit_test(the_brightest_of_a_block_counts),
     };
     return cmocka_run_group_tests_name("volume", tests, NULL, NULL);
 }
