@@ -16,8 +16,8 @@ enum {
 /* What sums of light without shadows may be wrong by, in parts of the tolerance. */
 #define SUM_TOLERANCE 0.1f
 
-/* With less than this part of the light open, shadows are known well: places that differ are then
- * at edges that need not be looked for. */
+/* With less than this part of the light open, most places are at edges anyway: no more are looked
+ * for, as to stop where neighbours are alike favours what most of them are. */
 #define OPEN_LITTLE 0.5f
 
 /* Between two places whose shadows differ by more than this, over the channels, is an edge. */
