@@ -5,6 +5,7 @@
 
 #include "base/arena.h"
 #include "base/diag.h"
+#include "base/json.h"
 #include "render/render.h"
 #include "sdl/sdl.h"
 
@@ -87,10 +88,6 @@ Status output_preflight(const Args *args, const char *const *paths, int path_cou
 
 /* Say early that a file could not be written. */
 Status output_can_write(const Args *args, const char *path);
-
-/* Print a JSON string with its quotes, or a number (null when it is not finite). */
-void json_string(FILE *file, const char *text);
-void json_number(FILE *file, double number);
 
 /* Print the counters, times and photon books of a render as JSON. */
 void stats_print_json(FILE *file, const Scene *scene, const RenderResult *result);

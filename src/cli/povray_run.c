@@ -2,19 +2,14 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "cli/povray_run.h"
 
+#include "base/child.h"
 #include "base/file.h"
 #include "image/png_file.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <math.h>
-#include <signal.h>
-#include <spawn.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
-
-extern char **environ;
 
 enum { WORDS_MAX = 256, WORD_BYTES = FILE_PATH_MAX + 64, LOG_BYTES_MAX = 16 << 20 };
 
@@ -111,32 +106,6 @@ static Status make_words(Words *w, const RenderOptions *o, const char *picture)
     return w->is_full ? diag_fail(w->args->diag, ERR_USAGE, "too many options for povray") : OK;
 }
 
-/* Start the program with its messages going to the file `log`. */
-static int start(char *const *words, const char *log, pid_t *child)
-{
-    posix_spawn_file_actions_t files;
-    posix_spawnattr_t attributes;
-    sigset_t defaults;
-    sigemptyset(&defaults);
-    sigaddset(&defaults, SIGPIPE);
-    sigaddset(&defaults, SIGXFSZ);
-    int error = posix_spawn_file_actions_init(&files);
-    if (error)
-        return error;
-    error = posix_spawnattr_init(&attributes);
-    if (!error) {
-        posix_spawnattr_setsigdefault(&attributes, &defaults);
-        posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
-        posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
-        posix_spawn_file_actions_addopen(&files, 1, "/dev/null", O_WRONLY, 0);
-        posix_spawn_file_actions_addopen(&files, 2, log, O_WRONLY | O_CREAT | O_TRUNC, 0600);
-        error = posix_spawnp(child, words[0], &files, &attributes, words, environ);
-        posix_spawnattr_destroy(&attributes);
-    }
-    posix_spawn_file_actions_destroy(&files);
-    return error;
-}
-
 static double children_cpu(void)
 {
     struct rusage usage;
@@ -181,19 +150,12 @@ static Status report(const Args *args, const char *log, int wait_status)
 static Status run(const Args *args, char *const *words, const char *log, SideRun *out)
 {
     double wall = clock_wall(), cpu = children_cpu();
-    pid_t child;
-    int error = start(words, log, &child);
-    if (error == ENOENT)
+    int wait_status;
+    Status status = child_run(args->diag, words, "/dev/null", log, &wait_status);
+    if (status == ERR_FILE)
         return diag_fail(args->diag, ERR_LIBRARY,
                          "povray is not installed (validate runs it on the same scene)");
-    if (error)
-        return diag_fail(args->diag, ERR_LIBRARY, "cannot run povray: %s", strerror(error));
-    int wait_status;
-    while (waitpid(child, &wait_status, 0) < 0) {
-        if (errno != EINTR)
-            return diag_fail(args->diag, ERR_LIBRARY, "cannot wait for povray: %s",
-                             strerror(errno));
-    }
+    TRY(status);
     out->wall_seconds = clock_wall() - wall;
     out->cpu_seconds = children_cpu() - cpu;
     if (WIFEXITED(wait_status) && WEXITSTATUS(wait_status) == 0)

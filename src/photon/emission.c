@@ -429,7 +429,8 @@ static void set_rules(Emission *emission, MapKind map)
                     .max_diffuse = INT_MAX,
                     .brightness = (float)settings->radiosity.brightness,
                     .inside = emission->inside,
-                    .has_media = plan_has(tracer_plan(emission->tracer), FEATURE_MEDIA)};
+                    .has_media = plan_has(tracer_plan(emission->tracer), FEATURE_MEDIA),
+                    .keeps_light = emission->options->is_full};
     if (settings->radiosity.recursion_limit > 0) /* the eye's own look, or gather rays, is one */
         emission->rules.max_diffuse = settings->radiosity.recursion_limit - 1;
 }

@@ -158,14 +158,13 @@ static Status merge_chunks(const EmitWork *work, PhotonList *out)
         is_short |= work->chunks[i].photons.is_short;
     }
     *out = (PhotonList){.items = is_short ? NULL : mem_array(total, sizeof *out->items)};
-    if (!out->items)
+    if (out->items && work->emission->rules.keeps_light)
+        out->lights = mem_array(total, sizeof *out->lights);
+    if (!out->items || (work->emission->rules.keeps_light && !out->lights))
         return diag_no_memory(work->emission->diag, "photons");
     for (size_t i = 0; i < work->count; i++) {
         Chunk *chunk = &work->chunks[i];
-        if (chunk->photons.count)
-            memcpy(out->items + out->count, chunk->photons.items,
-                   chunk->photons.count * sizeof *out->items);
-        out->count += chunk->photons.count;
+        photon_list_append(out, &chunk->photons);
         if (work->has_books)
             keep_books(&work->emission->books[chunk->beam->source], chunk);
     }
@@ -182,8 +181,10 @@ static Status run(Emission *emission, bool has_books, PhotonList *out)
     Status status = work_for(emission->thread_count, work.count, emit_chunk, &work);
     if (status == OK)
         status = merge_chunks(&work, out);
+    if (status != OK)
+        photon_list_free(out);
     for (size_t i = 0; i < work.count; i++)
-        mem_free(work.chunks[i].photons.items);
+        photon_list_free(&work.chunks[i].photons);
     mem_free(work.chunks);
     return status;
 }
@@ -196,6 +197,7 @@ Status emission_run(Emission *emission, PhotonList *out)
 Status emission_run_places(Emission *emission, int part, PhotonList *out)
 {
     emission_set_keys(emission, 1);
+    emission->rules.keeps_light = false;
     for (int i = 0; i < emission->beam_count; i++) {
         Beam *beam = &emission->beams[i];
         beam->rays = (beam->rays + (uint64_t)part - 1) / (uint64_t)part;

@@ -92,24 +92,6 @@ static bool find_weights(const PhotonMap *map, V3 p, V3 n, const GatherLimits *l
     weigh(&scratch->found, is_softened ? KERNEL_EPANECHNIKOV : limits->kernel, radius2);
     return true;
 }
-/* Return the power step of a stored photon: 2^(exponent - RGBE_BIAS); the exponents in use
- * make it a normal float, black photons have no mantissa to multiply. */
-static inline float rgbe_step(uint32_t rgbe)
-{
-    uint32_t exponent = rgbe >> 24;
-    exponent = exponent < RGBE_LEAST ? RGBE_LEAST : exponent;
-    uint32_t bits = (exponent - RGBE_BIAS + 127) << 23;
-    float step;
-    memcpy(&step, &bits, sizeof step);
-    return step;
-}
-
-static inline Rgb rgbe_power(uint32_t rgbe)
-{
-    float step = rgbe_step(rgbe);
-    return rgb((float)(rgbe & 255) * step, (float)(rgbe >> 8 & 255) * step,
-               (float)(rgbe >> 16 & 255) * step);
-}
 
 int photon_gather(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
                   GatherScratch *scratch, Rgb *out)
@@ -120,9 +102,7 @@ int photon_gather(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
         return 0;
     double r = 0, g = 0, b = 0;
     for (size_t i = 0; i < found->count; i++) {
-        uint32_t index = found->index[i];
-        uint32_t rgbe = map->blocks[index / BLOCK_PHOTONS].rgbe[index % BLOCK_PHOTONS];
-        Rgb power = rgbe_power(rgbe);
+        Rgb power = photon_map_power(map, found->index[i]);
         r += (double)(power.r * found->distance2[i]);
         g += (double)(power.g * found->distance2[i]);
         b += (double)(power.b * found->distance2[i]);
@@ -147,12 +127,10 @@ int photon_gather_list(const PhotonMap *map, V3 p, V3 n, const GatherLimits *lim
         scratch->list_capacity = capacity;
     }
     for (size_t i = 0; i < found->count; i++) {
-        const PhotonBlock *block = &map->blocks[found->index[i] / BLOCK_PHOTONS];
-        uint32_t lane = found->index[i] % BLOCK_PHOTONS;
-        uint16_t from = block->from[lane];
+        uint32_t index = found->index[i];
         scratch->list[i] =
-            (GatheredPhoton){direction_decode((uint8_t)from, (uint8_t)(from >> 8)),
-                             rgb_scale(rgbe_power(block->rgbe[lane]), found->distance2[i])};
+            (GatheredPhoton){photon_map_from(map, index),
+                             rgb_scale(photon_map_power(map, index), found->distance2[i])};
     }
     *out = scratch->list;
     return (int)found->count;

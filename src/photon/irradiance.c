@@ -10,6 +10,7 @@
 #include "base/work.h"
 #include "math/sample.h"
 #include "photon/gather.h"
+#include "photon/photon_map_int.h"
 
 enum {
     PLACE_PHOTONS = 50, /* of an estimate */
@@ -213,7 +214,7 @@ static Rgb sum_photons(TraceThread *thread, const PhotonMap *map, const Disk *di
         if (!is_all_clear && !is_clear(thread, above(disk, 0, 0), p))
             continue;
         double weight = gather_kernel(PLACE_KERNEL, fmin(1, x));
-        Rgb power = rgb_scale(rgbe_decode(photon.rgbe), (float)weight);
+        Rgb power = rgb_scale(photon_map_power(map, index[i]), (float)weight);
         r += (double)power.r;
         g += (double)power.g;
         b += (double)power.b;

@@ -20,6 +20,13 @@ typedef struct Photon {
 
 static_assert(sizeof(Photon) == 20, "a photon is 20 bytes");
 
+/* Power and direction of a photon as they were before they went into its 20 bytes: kept beside it
+ * only to measure what the 20 bytes cost. */
+typedef struct PhotonLight {
+    Rgb power;
+    float from[3]; /* unit, towards where it came from */
+} PhotonLight;
+
 /* A photon in media that came over mirrors and glass only. */
 enum { PHOTON_FOCUSED = 1 };
 

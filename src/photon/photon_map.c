@@ -34,6 +34,7 @@ static_assert(sizeof(Key) == 4 * sizeof(float), "keys are read four floats at a 
 typedef struct Build {
     PhotonMap *map;
     const Photon *photons;
+    const PhotonLight *lights; /* of the photons; NULL: not kept */
     Key *keys;
 } Build;
 
@@ -227,6 +228,8 @@ static void fill_block(const Build *build, size_t number)
                          (uint32_t)photon->rgbe[2] << 16 | (uint32_t)photon->rgbe[3] << 24;
         block->from[i] = (uint16_t)(photon->phi | photon->theta << 8);
         block->flags[i] = photon->flags;
+        if (build->lights)
+            build->map->lights[number * BLOCK_PHOTONS + i] = build->lights[keys[i].index];
     }
     for (size_t i = count; i < BLOCK_PHOTONS; i++)
         block->pos[0][i] = block->pos[1][i] = block->pos[2][i] = NAN;
@@ -263,7 +266,9 @@ static Status map_fill(Build *build, size_t count, int threads)
     map->level_blocks = power_of_two_below(map->block_count);
     map->splits = mem_array(map->block_count, sizeof *map->splits);
     map->memory = mem_alloc(map->block_count * sizeof *map->blocks + CACHE_LINE);
-    if (!map->splits || !map->memory)
+    if (build->lights)
+        map->lights = mem_array(map->count, sizeof *map->lights);
+    if (!map->splits || !map->memory || (build->lights && !map->lights))
         return ERR_MEMORY;
     uintptr_t start = ((uintptr_t)map->memory + CACHE_LINE - 1) & ~(uintptr_t)(CACHE_LINE - 1);
     map->blocks = (PhotonBlock *)start;
@@ -272,8 +277,8 @@ static Status map_fill(Build *build, size_t count, int threads)
                     build);
 }
 
-Status photon_map_new(Diag *diag, Photon *photons, size_t count, V3 center, int threads,
-                      PhotonMap **out)
+Status photon_map_new_full(Diag *diag, Photon *photons, PhotonLight *lights, size_t count,
+                           V3 center, int threads, PhotonMap **out)
 {
     *out = NULL;
     PhotonMap *map = mem_alloc(sizeof *map);
@@ -281,10 +286,11 @@ Status photon_map_new(Diag *diag, Photon *photons, size_t count, V3 center, int 
     Status status = map && keys ? OK : ERR_MEMORY;
     if (status == OK) {
         map->center = center;
-        Build build = {map, photons, keys};
+        Build build = {map, photons, lights, keys};
         status = map_fill(&build, count, threads);
     }
     mem_free(keys);
+    mem_free(lights);
     mem_free(photons);
     if (status == OK) {
         *out = map;
@@ -294,12 +300,19 @@ Status photon_map_new(Diag *diag, Photon *photons, size_t count, V3 center, int 
     return status == ERR_MEMORY ? diag_no_memory(diag, "a photon map") : status;
 }
 
+Status photon_map_new(Diag *diag, Photon *photons, size_t count, V3 center, int threads,
+                      PhotonMap **out)
+{
+    return photon_map_new_full(diag, photons, NULL, count, center, threads, out);
+}
+
 void photon_map_free(PhotonMap *map)
 {
     if (!map)
         return;
     mem_free(map->splits);
     mem_free(map->memory);
+    mem_free(map->lights);
     mem_free(map);
 }
 
@@ -313,6 +326,8 @@ size_t photon_map_bytes(const PhotonMap *map)
     size_t bytes = sizeof *map;
     if (map->block_count)
         bytes += map->block_count * (sizeof *map->blocks + sizeof *map->splits) + CACHE_LINE;
+    if (map->lights)
+        bytes += map->count * sizeof *map->lights;
     return bytes;
 }
 
@@ -342,5 +357,7 @@ uint64_t photon_map_hash(const PhotonMap *map)
         hash = hash_bytes(hash, map->blocks, map->block_count * sizeof *map->blocks);
         hash = hash_bytes(hash, map->splits, (map->block_count - 1) * sizeof *map->splits);
     }
+    if (map->lights)
+        hash = hash_bytes(hash, map->lights, map->count * sizeof *map->lights);
     return hash ? hash : 1;
 }

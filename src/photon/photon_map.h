@@ -21,6 +21,10 @@ typedef struct PhotonMap PhotonMap;
  * O(n log n); needs another 37 bytes a photon while it runs. */
 Status photon_map_new(Diag *diag, Photon *photons, size_t count, V3 center, int threads,
                       PhotonMap **out);
+/* The same with the light of the photons in full precision, `lights` beside `photons`; takes
+ * ownership of both.  Estimates then read that; 24 bytes a photon more. */
+Status photon_map_new_full(Diag *diag, Photon *photons, PhotonLight *lights, size_t count,
+                           V3 center, int threads, PhotonMap **out);
 void photon_map_free(PhotonMap *map);
 size_t photon_map_count(const PhotonMap *map);
 /* Return all the memory the map holds, bytes. */

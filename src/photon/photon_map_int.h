@@ -4,6 +4,8 @@
 
 #include "photon/photon_map.h"
 
+#include <string.h>
+
 enum { BLOCK_PHOTONS = 16 };
 
 /* Sixteen photons, field by field: five cache lines, three of them positions. */
@@ -30,8 +32,46 @@ struct PhotonMap {
     uint32_t block_count;
     uint32_t level_blocks; /* largest power of two not above block_count */
     V3 center;
-    void *memory; /* of blocks */
+    void *memory;        /* of blocks */
+    PhotonLight *lights; /* of each photon of the blocks in turn; NULL: 20 bytes are all */
 };
+
+/* Return the power step of a stored photon: 2^(exponent - RGBE_BIAS); the exponents in use
+ * make it a normal float, black photons have no mantissa to multiply. */
+static inline float rgbe_step(uint32_t rgbe)
+{
+    uint32_t exponent = rgbe >> 24;
+    exponent = exponent < RGBE_LEAST ? RGBE_LEAST : exponent;
+    uint32_t bits = (exponent - RGBE_BIAS + 127) << 23;
+    float step;
+    memcpy(&step, &bits, sizeof step);
+    return step;
+}
+
+static inline Rgb rgbe_power(uint32_t rgbe)
+{
+    float step = rgbe_step(rgbe);
+    return rgb((float)(rgbe & 255) * step, (float)(rgbe >> 8 & 255) * step,
+               (float)(rgbe >> 16 & 255) * step);
+}
+
+/* Return the power of photon `index`, and where it came from. */
+static inline Rgb photon_map_power(const PhotonMap *map, size_t index)
+{
+    if (map->lights)
+        return map->lights[index].power;
+    return rgbe_power(map->blocks[index / BLOCK_PHOTONS].rgbe[index % BLOCK_PHOTONS]);
+}
+
+static inline V3 photon_map_from(const PhotonMap *map, size_t index)
+{
+    if (map->lights) {
+        const float *from = map->lights[index].from;
+        return v3((double)from[0], (double)from[1], (double)from[2]);
+    }
+    uint16_t from = map->blocks[index / BLOCK_PHOTONS].from[index % BLOCK_PHOTONS];
+    return direction_decode((uint8_t)from, (uint8_t)(from >> 8));
+}
 
 /* Return the block a leaf node stands for. */
 static inline uint32_t block_of_node(const PhotonMap *map, uint32_t node)

@@ -67,6 +67,19 @@ static void warn_of_none(const Emission *emission, MapKind kind, const char *rea
                   map_name[kind], reason);
 }
 
+/* Make room for so many more photons. */
+static bool make_room(PhotonList *list, size_t more)
+{
+    size_t count = list->count + more;
+    Photon *items = mem_resize(list->items, count * sizeof *items);
+    list->items = items ? items : list->items;
+    if (!items || !list->lights)
+        return items;
+    PhotonLight *lights = mem_resize(list->lights, count * sizeof *lights);
+    list->lights = lights ? lights : list->lights;
+    return lights;
+}
+
 /* Send the photons of a kind and add them to `photons`. */
 static Status emit(Emission *emission, MapKind kind, Stats *stats, PhotonList *photons)
 {
@@ -87,18 +100,15 @@ static Status emit(Emission *emission, MapKind kind, Stats *stats, PhotonList *p
     if (sent.count == 0)
         warn_of_none(emission, kind, "no photon was stored");
     if (photons->count == 0) {
-        mem_free(photons->items);
+        photon_list_free(photons);
         *photons = sent;
         return OK;
     }
-    Photon *all = mem_resize(photons->items, (photons->count + sent.count) * sizeof *all);
-    if (all) {
-        memcpy(all + photons->count, sent.items, sent.count * sizeof *all);
-        photons->items = all;
-        photons->count += sent.count;
-    }
-    mem_free(sent.items);
-    return all ? OK : diag_no_memory(emission->diag, "photons");
+    bool has_room = make_room(photons, sent.count);
+    if (has_room)
+        photon_list_append(photons, &sent);
+    photon_list_free(&sent);
+    return has_room ? OK : diag_no_memory(emission->diag, "photons");
 }
 
 /* Make the map of what was sent; *map stays NULL when that is nothing. */
@@ -107,10 +117,11 @@ static Status build(const Emission *emission, Stats *stats, PhotonList *photons,
     double started = clock_wall();
     Status status = OK;
     if (photons->count > 0)
-        status = photon_map_new(emission->diag, photons->items, photons->count,
+        status =
+            photon_map_new_full(emission->diag, photons->items, photons->lights, photons->count,
                                 emission->rules.center, emission->options->threads, map);
     else
-        mem_free(photons->items);
+        photon_list_free(photons);
     *photons = (PhotonList){0};
     stats->seconds[PHASE_PHOTON_BUILD] += clock_wall() - started;
     return status;
@@ -302,7 +313,7 @@ Status photon_pass(const Tracer *tracer, const PhotonOptions *options, Diag *dia
         done += length;
         status = make_map(tracer, (MapKind)kind, &part, diag, stats, &photons, out);
     }
-    mem_free(photons.items);
+    photon_list_free(&photons);
     if (status != OK)
         photon_maps_done(out);
     else if (!options->has_radii)

@@ -52,6 +52,7 @@ typedef struct PhotonOptions {
     uint64_t seed;
     int threads;
     bool is_repeat; /* what there is to warn of was said in a pass before */
+    bool is_full;   /* photons keep their light in full precision beside the 20 bytes */
     bool has_radii; /* the caller knows the gather radii: they are left 0 */
     void (*progress)(void *ctx, double fraction);
     void *progress_ctx;

@@ -88,12 +88,10 @@ static double radius_around(const PhotonMap *map, V3 p, int nearest, GatherScrat
     return radius2 > 0 && isfinite(radius2) ? sqrt(radius2) : 0;
 }
 
-static Rgb lane_power(const PhotonBlock *block, int i)
+/* Return the number of a block's photon in the map. */
+static size_t lane_index(const PhotonMap *map, const PhotonBlock *block, int i)
 {
-    uint32_t rgbe = block->rgbe[i];
-    const uint8_t bytes[4] = {(uint8_t)rgbe, (uint8_t)(rgbe >> 8), (uint8_t)(rgbe >> 16),
-                              (uint8_t)(rgbe >> 24)};
-    return rgbe_decode(bytes);
+    return (size_t)(block - map->blocks) * BLOCK_PHOTONS + (size_t)i;
 }
 
 /* All photons of a block are taken to be in the media of the first. */
@@ -114,7 +112,8 @@ static BlockLight block_light(const Tracer *tracer, const PhotonMap *map, const 
             media_here(tracer, &inside, &here);
         }
         media_at(&here, p, &point);
-        float its = rgb_max(rgb_mul(point.scattering, lane_power(block, i)));
+        float its =
+            rgb_max(rgb_mul(point.scattering, photon_map_power(map, lane_index(map, block, i))));
         light.most = fmaxf(light.most, its);
         light.mean += (its - light.mean) / (float)count;
     }
@@ -309,15 +308,16 @@ static bool is_cut(const VolumeQuery *query, const VolumeBox *box)
 static void visit_photon(const VolumeQuery *query, const PhotonBlock *block, int i, float along,
                          float way, float kernel)
 {
-    uint16_t from = block->from[i];
+    const PhotonMap *map = query->index->map;
+    size_t index = lane_index(map, block, i);
     float away[3];
     for (int axis = 0; axis < 3; axis++)
         away[axis] = block->pos[axis][i] - query->o[axis] - along * query->d[axis];
     VolumePhoton photon = {.t = (double)along + query->shift,
                            .way = (double)way,
                            .aside = {(double)away[0], (double)away[1], (double)away[2]},
-                           .from = direction_decode((uint8_t)from, (uint8_t)(from >> 8)),
-                           .power = rgb_scale(lane_power(block, i), kernel),
+                           .from = photon_map_from(map, index),
+                           .power = rgb_scale(photon_map_power(map, index), kernel),
                            .is_focused = block->flags[i] == PHOTON_FOCUSED};
     query->visit(query->ctx, &photon);
 }

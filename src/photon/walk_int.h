@@ -2,8 +2,11 @@
 #ifndef PMS_PHOTON_WALK_INT_H
 #define PMS_PHOTON_WALK_INT_H
 
+#include "base/mem.h"
 #include "photon/beam_int.h"
 #include "photon/photon.h"
+
+#include <string.h>
 
 /* Which map a photon is for, and so which hits are kept:
  *
@@ -35,9 +38,27 @@ typedef enum PathEnd { PATH_STORED, PATH_ABSORBED, PATH_ESCAPED, PATH_CUT, PATH_
 /* A growing list of photons. */
 typedef struct PhotonList {
     Photon *items;
+    PhotonLight *lights; /* of each item in full precision; NULL: not kept */
     size_t count, capacity;
     bool is_short; /* memory ran out: some were not kept */
 } PhotonList;
+
+static inline void photon_list_free(PhotonList *list)
+{
+    mem_free(list->items);
+    mem_free(list->lights);
+    *list = (PhotonList){0};
+}
+
+/* Append the photons of a list to one that has room for them. */
+static inline void photon_list_append(PhotonList *to, const PhotonList *from)
+{
+    if (from->count && to->lights)
+        memcpy(to->lights + to->count, from->lights, from->count * sizeof *to->lights);
+    if (from->count)
+        memcpy(to->items + to->count, from->items, from->count * sizeof *to->items);
+    to->count += from->count;
+}
 
 /* What all walks of a pass share. */
 typedef struct WalkRules {
@@ -53,6 +74,7 @@ typedef struct WalkRules {
     float brightness;   /* factor of every diffuse reflection (global) */
     const Interiors *inside; /* per light: the interiors it is in; what glows is asked for */
     bool has_media;
+    bool keeps_light; /* photons in full precision too */
 } WalkRules;
 
 /* What became of a photon. */

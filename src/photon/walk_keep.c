@@ -4,12 +4,26 @@
 
 #include "base/mem.h"
 
-static bool make_room(PhotonList *list)
+/* Let the lights keep pace with the items. */
+static bool make_light_room(PhotonList *list)
+{
+    PhotonLight *lights = mem_resize(list->lights, list->capacity * sizeof *lights);
+    if (lights)
+        list->lights = lights;
+    return lights != NULL;
+}
+
+static bool make_room(PhotonList *list, bool has_lights)
 {
     void *items = list->items;
+    size_t before = list->capacity;
     if (mem_grow(&items, list->count, &list->capacity, sizeof *list->items) != 0)
         list->is_short = true;
     list->items = items;
+    if (has_lights && list->capacity != before && !make_light_room(list)) {
+        list->is_short = true;
+        list->capacity = before;
+    }
     return list->count < list->capacity;
 }
 
@@ -27,9 +41,12 @@ static float thin_out(Walk *walk, Rgb power, float least)
 
 static bool store(Walk *walk, V3 p, V3 from, unsigned flags, Rgb power, PhotonList *out)
 {
-    if (!(rgb_max(power) > 0) || !rgb_is_finite(power) || !make_room(out))
+    if (!(rgb_max(power) > 0) || !rgb_is_finite(power) || !make_room(out, walk->rules->keeps_light))
         return false;
     V3 at = v3_sub(p, walk->rules->center);
+    if (walk->rules->keeps_light)
+        out->lights[out->count] =
+            (PhotonLight){power, {(float)from.x, (float)from.y, (float)from.z}};
     Photon *photon = &out->items[out->count++];
     *photon = (Photon){.pos = {(float)at.x, (float)at.y, (float)at.z}, .flags = (uint16_t)flags};
     rgbe_encode(power, walk->rng, photon->rgbe);

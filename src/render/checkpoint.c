@@ -99,8 +99,7 @@ static bool is_same(const char *a, int a_length, const char *b, int b_length)
     return a_length == b_length && memcmp(a, b, (size_t)a_length) == 0;
 }
 
-/* Put the differences of two descriptions into words. */
-static void tell_difference(const char *there, const char *here, char *out, size_t size)
+void checkpoint_difference(const char *there, const char *here, char *out, size_t size)
 {
     Line a, b;
     size_t used = 0;
@@ -260,7 +259,7 @@ static Status check_settings(const Reader *r, const char *settings, const FilmSu
     char difference[2 * CHECKPOINT_SETTINGS_MAX];
     if (strcmp(settings, r->settings) == 0)
         return r->header.value_count == sum->count ? OK : damaged(r);
-    tell_difference(r->settings, settings, difference, sizeof difference);
+    checkpoint_difference(r->settings, settings, difference, sizeof difference);
     return diag_fail(r->diag, ERR_USAGE,
                      "'%s' is of another picture: %s; without --resume it is begun anew", r->path,
                      difference);

@@ -14,6 +14,9 @@ enum { CHECKPOINT_SETTINGS_MAX = 2048 };
 void checkpoint_describe(const Scene *scene, const RenderOptions *options,
                          char settings[CHECKPOINT_SETTINGS_MAX]);
 
+/* Put what differs between two descriptions into words. */
+void checkpoint_difference(const char *there, const char *here, char *out, size_t size);
+
 /* Write the state.  On ERR_FILE the old one is as it was. */
 Status checkpoint_write(Diag *diag, const char *path, const char *settings, const PassRadii *first,
                         const FilmSum *sum);

@@ -41,6 +41,7 @@ PhotonOptions pass_photon_options(const RenderOptions *options, uint64_t seed)
 {
     return (PhotonOptions){.seed = seed,
                            .threads = options->threads,
+                           .is_full = options->has_full_photons,
                            .progress = options->progress ? photon_progress : NULL,
                            .progress_ctx = (void *)(uintptr_t)options};
 }
@@ -200,6 +201,8 @@ Status pass_render(const Tracer *tracer, const PassOptions *options, Diag *diag,
         out->caustic_hash = map_hash(pass.maps.caustic);
         out->global_hash = map_hash(pass.maps.global);
         out->volume_hash = map_hash(pass.maps.volume);
+        out->radii = (PassRadii){pass.maps.caustic_radius, pass.maps.global_radius,
+                                 tracer_scene(tracer)->settings.photons.media_radius};
         out->books = pass.maps.books;
         pass.maps.books = (PhotonBooks){0};
     }

@@ -24,6 +24,7 @@ typedef struct PassOptions {
 /* What a pass leaves beside the picture.  Free with pass_result_done. */
 typedef struct PassResult {
     PhotonBooks books;
+    PassRadii radii; /* of a pass that is the only one */
     uint64_t caustic_hash, global_hash, volume_hash; /* of the photon maps' bytes, 0: no map */
 } PassResult;
 

@@ -29,6 +29,7 @@ static void take_result(Film *film, PassResult *pass, RenderResult *out)
     out->global_hash = pass->global_hash;
     out->volume_hash = pass->volume_hash;
     out->books = pass->books;
+    out->first_radii = out->last_radii = pass->radii;
     film->image = (Image){0};
     pass->books = (PhotonBooks){0};
 }

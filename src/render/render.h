@@ -55,6 +55,7 @@ typedef struct RenderOptions {
     int samples;             /* a pixel, of AA_UNIFORM */
     unsigned layers;         /* LayerBits */
     bool has_alpha;          /* background transparent (+UA) */
+    bool has_full_photons;   /* photons keep their light in full precision: see PhotonOptions */
     PlanOptions plan;
     ProgressiveOptions progressive;
     void (*progress)(void *ctx, const RenderProgress *progress);
@@ -69,7 +70,7 @@ typedef struct RenderOptions {
 struct RenderResult {
     Image image;      /* beauty RGBA first, then the layers asked for */
     uint64_t passes, new_passes; /* of a progressive render: in all, and of this run; else 0 */
-    PassRadii first_radii, last_radii;
+    PassRadii first_radii, last_radii; /* of a single pass: both what it gathered within */
     Stats stats;
     PhotonBooks books;
     Plan plan;        /* its memory is the scene's arena */

@@ -427,6 +427,42 @@ static void spacing_sets_the_count(void **state)
     lit_done(&lit);
 }
 
+/* Photons kept in full are the same photons; what they carry is what the 20 bytes round. */
+static void full_light_is_what_20_bytes_round(void **state)
+{
+    (void)state;
+    enum { NEAR = 200 };
+    LitScene lit;
+    PhotonMaps full;
+    const GatheredPhoton *packed, *exact;
+    lit_make(&lit, busy_scene, 2, 1);
+    lit.options.is_full = true;
+    assert_int_equal(photon_pass(lit.tracer, &lit.options, &lit.diag, &lit.stats, &full), OK);
+    size_t count = photon_map_count(lit.maps.caustic);
+    assert_true(photon_map_count(full.caustic) == count && count > NEAR);
+    assert_true(photon_map_bytes(full.caustic) ==
+                photon_map_bytes(lit.maps.caustic) + count * sizeof(PhotonLight));
+    assert_true(photon_map_hash(full.caustic) != photon_map_hash(lit.maps.caustic));
+    GatherScratch *a = gather_scratch_new(), *b = gather_scratch_new();
+    GatherLimits limits = GATHER_LIMITS_DEFAULT;
+    limits.max_photons = NEAR;
+    V3 p = v3(0, 0, 0), n = v3(0, 1, 0);
+    int found = photon_gather_list(lit.maps.caustic, p, n, &limits, a, &packed);
+    assert_int_equal(photon_gather_list(full.caustic, p, n, &limits, b, &exact), found);
+    int different = 0;
+    for (int i = 0; i < found; i++) {
+        float step = rgb_max(exact[i].irradiance) / 128;
+        assert_true(rgb_max_abs(rgb_sub(packed[i].irradiance, exact[i].irradiance)) <= step);
+        assert_true(v3_dot(packed[i].from, exact[i].from) > cos(DIRECTION_MAX_ERROR) - 1e-6);
+        different += rgb_max_abs(rgb_sub(packed[i].irradiance, exact[i].irradiance)) > 0;
+    }
+    assert_true(found > NEAR / 2 && different > found / 2);
+    gather_scratch_free(a);
+    gather_scratch_free(b);
+    photon_maps_done(&full);
+    lit_done(&lit);
+}
+
 static void interruption_stops_the_pass(void **state)
 {
     (void)state;
@@ -503,6 +539,7 @@ int main(void)
         cmocka_unit_test(small_targets_are_found),
         cmocka_unit_test(count_means_stored),
         cmocka_unit_test(spacing_sets_the_count),
+        cmocka_unit_test(full_light_is_what_20_bytes_round),
         cmocka_unit_test(interruption_stops_the_pass),
         cmocka_unit_test(scarce_memory_is_reported),
         cmocka_unit_test(progress_goes_forward),

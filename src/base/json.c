@@ -1,5 +1,5 @@
 /* JSON, written by hand.  SPDX-License-Identifier: Apache-2.0 */
-#include "cli/cli.h"
+#include "base/json.h"
 
 #include <math.h>
 

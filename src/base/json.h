@@ -1,0 +1,11 @@
+/* JSON, written by hand.  SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_BASE_JSON_H
+#define PMS_BASE_JSON_H
+
+#include <stdio.h>
+
+/* Print a JSON string with its quotes, or a number (null when it is not finite). */
+void json_string(FILE *file, const char *text);
+void json_number(FILE *file, double number);
+
+#endif
