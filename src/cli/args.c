@@ -166,6 +166,10 @@ static Status set_option(Args *args, int id, const char *value)
         return args_add_library(args, value);
     if (id == OPT_DECLARE)
         return args_add_declare(args, value);
+    if (id == OPT_EFFECT)
+        return args_add_effects(args, value);
+    if (id == OPT_NO_PHOTONS)
+        args_add_no_photons(args);
     if (id == OPT_AA)
         args->has_pov_aa = false;
     return OK;
@@ -373,6 +377,8 @@ Status args_load_scene(const Args *args, int index, Scene **out, double *seconds
     double start = clock_wall();
     Status status = sdl_load(args->diag, args->operands[index], &sdl, out);
     *seconds = clock_wall() - start;
+    if (status == OK && args->effects[FEATURE_CAUSTIC_MAP] == TRI_ON)
+        scene_add_photons(*out);
     return status;
 }
 
@@ -467,7 +473,7 @@ Status args_render_options(const Args *args, RenderOptions *out)
     out->threads = (int)threads;
     out->seed = (uint64_t)seed;
     out->plan.quality = (int)(quality > 9 ? 9 : quality);
-    out->plan.has_no_photons = args_has(args, OPT_NO_PHOTONS);
+    memcpy(out->plan.effects, args->effects, sizeof args->effects);
     out->has_alpha = args_has(args, OPT_ALPHA);
     return OK;
 }

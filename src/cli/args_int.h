@@ -13,6 +13,12 @@ Status args_add_library(Args *args, const char *path);
 Status args_add_operand(Args *args, const char *operand);
 Status args_add_declare(Args *args, const char *text);
 
+/* Take the effects of --effect: NAME=on|off, with commas between. */
+Status args_add_effects(Args *args, const char *text);
+
+/* Take --no-photons: no effect that photons bring. */
+void args_add_no_photons(Args *args);
+
 /* Fill in what --progressive and the options beside it ask for. */
 Status args_progressive(const Args *args, RenderOptions *out);
 

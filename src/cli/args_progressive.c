@@ -49,7 +49,8 @@ Status args_progressive(const Args *args, RenderOptions *out)
     static const char *const names[] = {"passes", "time", "resume"};
     ProgressiveOptions *progressive = &out->progressive;
     long passes;
-    out->plan.is_progressive = args_has(args, OPT_PROGRESSIVE);
+    Tri forced = args->effects[FEATURE_PROGRESSIVE];
+    out->plan.is_progressive = forced ? forced == TRI_ON : args_has(args, OPT_PROGRESSIVE);
     for (int i = 0; i < 3 && !out->plan.is_progressive; i++)
         if (args_has(args, needing[i]))
             return diag_fail(args->diag, ERR_USAGE, "--%s wants --progressive beside it", names[i]);

@@ -43,6 +43,7 @@ typedef struct Args {
     int library_count;
     SdlDeclare *declares; /* -D, Declare= */
     int declare_count;
+    Tri effects[FEATURE_COUNT]; /* --effect, --no-photons: of each effect the last holds */
     /* what POV-style switches set */
     bool has_pov_aa, is_aa_off;
     int aa_method, aa_depth;        /* +AM, +R; 0: not given */

@@ -140,8 +140,9 @@ static void print_text(const Explanation *e)
 static void print_json_feature(const Explanation *e, int id)
 {
     const PlanRow *row = &e->plan.rows[id];
-    printf("%s\n    {\"name\": \"%s\", \"on\": %s, \"reason\": ", id ? "," : "",
-           feature_name((FeatureId)id), row->is_on ? "true" : "false");
+    printf("%s\n    {\"name\": \"%s\", \"on\": %s, \"forced\": %s, \"reason\": ", id ? "," : "",
+           feature_name((FeatureId)id), row->is_on ? "true" : "false",
+           row->forced ? "true" : "false");
     json_string(stdout, row->reason);
     if (row->why.source) {
         Place place = span_place(row->why);

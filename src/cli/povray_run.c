@@ -86,7 +86,7 @@ static void add_declares(Words *w)
 
 static Status make_words(Words *w, const RenderOptions *o, const char *picture)
 {
-    bool has_no_photons = args_has(w->args, OPT_NO_PHOTONS) && o->plan.quality > 8;
+    bool has_no_photons = o->plan.effects[FEATURE_CAUSTIC_MAP] == TRI_OFF && o->plan.quality > 8;
     add(w, "povray");
     add(w, "+I\"%s\"", w->args->operands[0]);
     add(w, "+O\"%s\"", picture);

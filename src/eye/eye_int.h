@@ -10,6 +10,7 @@ typedef struct EyeLight {
     const Light *light;
     int index; /* among the scene's lights */
     bool has_shadow, is_area, has_highlights;
+    bool is_met;         /* paths may meet it, where it has a size */
     bool makes_caustics; /* the caustic map alone brings what targets refract of it */
     bool lights_media;   /* media scatter its light */
     bool makes_volume;   /* the volume map alone brings what targets refract of it */

@@ -18,11 +18,14 @@ static EyeLight eye_light(const EyeThread *eye, int index)
     /* The plan decides, not the map: where photons were sent and none landed, the light they stand
      * for must not come straight instead.  But where no lamp has a way to a target, its shadow is
      * that of any object, as in the language. */
-    bool is_refracted = plan->light_makes_caustics[index] && light->photon_refraction != TRI_OFF;
+    bool is_refracted = plan->light_makes_caustics[index] && light->photon_refraction != TRI_OFF &&
+                        plan_has(plan, FEATURE_REFRACTION);
     return (EyeLight){
         .light = light,
         .index = index,
         .has_shadow = !light->is_shadowless && plan_has(plan, FEATURE_SHADOWS),
+        .is_met = plan_has(plan, FEATURE_PATH_CAUSTICS) && !light->is_shadowless &&
+                  !(has_area && plan_forbids(plan, FEATURE_AREA_LIGHTS)),
         .is_area = has_area && !light->is_shadowless && plan_has(plan, FEATURE_AREA_LIGHTS),
         .has_highlights = !light->is_shadowless && plan_has(plan, FEATURE_HIGHLIGHTS),
         .makes_caustics = is_refracted && !eye->options.has_no_caustics,

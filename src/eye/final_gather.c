@@ -257,8 +257,9 @@ static Rgb follow(EyeThread *eye, GatherRay *way, double *distance)
         if (i == 0)
             *distance = hit.t;
         surface_sample(&eye->trace, &way->ray, &hit, &way->inside, &s);
-        Rgb light =
-            rgb_add(surface_glow(eye->trace.tracer, &s), reflected_light(eye, way, &s, length));
+        Rgb light = reflected_light(eye, way, &s, length);
+        if (!plan_forbids(eye->plan, FEATURE_GLOW))
+            light = rgb_add(surface_glow(eye->trace.tracer, &s), light);
         sum = rgb_add(sum, rgb_mul(way->weight, light));
         if (!go_on(eye, way, &hit, &s))
             break;

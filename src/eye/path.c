@@ -38,7 +38,7 @@ static void add_met_lights(EyeThread *eye, const Path *path, double t, Radiance 
     for (int i = 0; i < eye->light_count; i++) {
         LightMeeting met;
         const EyeLight *light = &eye->lights[i];
-        if (!light->has_shadow ||
+        if (!light->is_met ||
             !light_meet(light->light, eye->plan->light_radius, &path->ray, t, path->length, &met))
             continue;
         Rgb weight = is_caustic ? path->shine : path->weight;
@@ -52,6 +52,8 @@ static void add_met_lights(EyeThread *eye, const Path *path, double t, Radiance 
 static void add_sky(const EyeThread *eye, const Path *path, Radiance *out)
 {
     float behind;
+    if (path->diffuse > 0 && plan_forbids(eye->plan, FEATURE_SKY_LIGHT))
+        return;
     Rgb sky = sky_light(eye, path->ray.d, path->is_mirrored, &behind);
     add_part(out, path_part(path), path->weight, sky);
     out->transmit = path->transmit * behind;
@@ -60,7 +62,9 @@ static void add_sky(const EyeThread *eye, const Path *path, Radiance *out)
 /* Highlights are for the eye: between surfaces they would send on more light than comes. */
 static void add_surface(EyeThread *eye, const Path *path, const SurfaceSample *s, Radiance *out)
 {
-    Rgb light = surface_glow(eye->trace.tracer, s);
+    Rgb light = RGB_BLACK;
+    if (path->diffuse == 0 || !plan_forbids(eye->plan, FEATURE_GLOW))
+        light = surface_glow(eye->trace.tracer, s);
     if (plan_has(eye->plan, FEATURE_LIGHTS))
         light = rgb_add(light, direct_light(eye, s, path->diffuse == 0));
     add_part(out, path_part(path), path->weight, light);

@@ -44,16 +44,17 @@ static double spot_rim(const Light *light)
 }
 
 /* Place on an area light: over its parallelogram, or the ellipse within. */
-static V3 area_place(const Light *light, V3 target, V2 square)
+static V3 area_place(const Beam *beam, V2 square)
 {
+    const Light *light = beam->light;
     const AreaLight *area = &light->area;
-    if (!light->has_area_photons || area->size1 < 1)
+    if (!beam->is_spread)
         return light->location;
     V3 axis1 = area->axis1, axis2 = area->axis2;
     if (area->is_oriented) {
         V3 s, t;
         double length = v3_len(axis1);
-        v3_frame(v3_unit(v3_sub(target, light->location)), &s, &t);
+        v3_frame(v3_unit(v3_sub(beam->center, light->location)), &s, &t);
         axis1 = v3_scale(s, length);
         axis2 = v3_scale(t, length);
     }
@@ -112,7 +113,7 @@ bool beam_ray(const Beam *beam, V2 square, V2 area, BeamRay *out)
     out->location = light->location;
     if (light_is_parallel(light))
         return disk_ray(beam, square, out);
-    out->location = area_place(light, beam->center, area);
+    out->location = area_place(beam, area);
     return cone_ray(beam, square, out);
 }
 
@@ -130,8 +131,7 @@ bool beam_can_shine(const Beam *beam)
     }
     if (light->is_parallel)
         return v3_dot(to_ball, light->direction) + beam->radius > 0;
-    bool moves = light->has_area_photons && light->area.size1 > 0;
-    if (light->kind != LIGHT_SPOT || moves || distance <= beam->radius)
+    if (light->kind != LIGHT_SPOT || beam->is_spread || distance <= beam->radius)
         return true;
     double angle = acos(fmin(1, fmax(-1, v3_dot(to_ball, light->direction) / distance)));
     return angle < light->falloff + asin(beam->radius / distance) + 1e-6;

@@ -12,6 +12,7 @@ enum { BEAM_GUIDES = 256 };
  * The square is divided into cells, each with a density of its own. */
 typedef struct Beam {
     const Light *light; /* NULL: of an object that glows, or of the sky */
+    bool is_spread;     /* its photons start anywhere on the light's area */
     int source;         /* whose books it is in: the light's number, or one after those */
     const Object *emitter; /* that glows; NULL (with no light): the sky */
     Bound box;             /* around what glows; for the sky, what it shines on */

@@ -205,9 +205,12 @@ static Status make_beams(Emission *emission)
     size_t capacity = 0;
     bool is_good = true;
     for (int i = 0; i < scene->light_count && is_good; i++) {
-        Beam beam = {.light = &scene->lights[i], .source = i, .spacing_factor = 1};
+        const Light *light = &scene->lights[i];
+        Beam beam = {.light = light, .source = i, .spacing_factor = 1};
         if (!takes_part(emission, i))
             continue;
+        beam.is_spread = light->has_area_photons && light->area.size1 > 0 &&
+                         !plan_forbids(tracer_plan(emission->tracer), FEATURE_AREA_LIGHTS);
         if (map_is_aimed(emission->rules.map)) {
             is_good = add_target_beams(emission, &capacity, beam);
         } else {
@@ -258,7 +261,7 @@ bool emission_ray(TraceThread *thread, const Beam *beam, uint64_t index, BeamRay
     double density;
     V2 square = beam_warp(beam, u, &density);
     V2 area = {0.5, 0.5};
-    if (!beam->light || beam->light->has_area_photons)
+    if (!beam->light || beam->is_spread)
         area = sample_2d(number, beam->area_key);
     double choice = beam->light ? 0 : rng_double(&shift);
     bool is_lit = emission_ray_at(thread, beam, square, area, choice, out);

@@ -7,18 +7,6 @@
 
 #include "math/eps.h"
 
-#include <stdarg.h>
-#include <stdio.h>
-
-enum {
-    QUALITY_LIGHTS = 2,      /* below: pigments only */
-    QUALITY_SHADOWS = 4,     /* shadow rays, area lights as points */
-    QUALITY_AREA_LIGHTS = 5, /* soft shadows */
-    QUALITY_REFRACTION = 6,  /* light through surfaces */
-    QUALITY_REFLECTION = 8,
-    QUALITY_PHOTONS = 9
-};
-
 /* Photons sent into the scene for indirect light when the scene names no number. */
 enum { GLOBAL_PHOTONS_DEFAULT = 200000 };
 
@@ -38,26 +26,6 @@ typedef struct Evidence {
     const Light *sized, *sizeless; /* casts shadows, and paths can (cannot) meet it */
     int sized_lights, sizeless_lights;
 } Evidence;
-
-const char *feature_name(FeatureId feature)
-{
-    static const char *const names[] = {
-#define X(id, name, text) name,
-#include "plan/feature.def"
-#undef X
-    };
-    return names[feature];
-}
-
-const char *feature_text(FeatureId feature)
-{
-    static const char *const texts[] = {
-#define X(id, name, text) text,
-#include "plan/feature.def"
-#undef X
-    };
-    return texts[feature];
-}
 
 /* --- evidence --------------------------------------------------------------------------- */
 
@@ -131,14 +99,22 @@ bool plan_photons_refract(const Light *light, const Surface *surface)
            photons_do(light->photon_refraction, surface->photons.refraction);
 }
 
-static bool light_makes_caustics(const Scene *scene, const Light *light)
+/* Do photons of a light go on from a surface, as far as they may? */
+static bool photons_go_on(const PlanOptions *options, const Light *light, const Surface *surface)
+{
+    return (options->effects[FEATURE_REFLECTION] != TRI_OFF &&
+            plan_photons_reflect(light, surface)) ||
+           (options->effects[FEATURE_REFRACTION] != TRI_OFF &&
+            plan_photons_refract(light, surface));
+}
+
+static bool light_makes_caustics(const Scene *scene, const PlanOptions *options, const Light *light)
 {
     if (light->is_shadowless || !light_shines(light) || !(light->photon_share > 0))
         return false;
     for (uint32_t i = 0; i < scene->surface_count; i++) {
         const Surface *surface = &scene->surfaces[i];
-        if (surface->is_target &&
-            (plan_photons_reflect(light, surface) || plan_photons_refract(light, surface)))
+        if (surface->is_target && photons_go_on(options, light, surface))
             return true;
     }
     return false;
@@ -184,12 +160,13 @@ static void look_at_light(const Scene *scene, const PlanOptions *options, const 
 {
     if (!light_shines(light))
         return;
-    bool has_size = plan_light_has_size(light, options->light_radius);
+    bool is_shrunk = light->area.size1 > 0 && options->effects[FEATURE_AREA_LIGHTS] == TRI_OFF;
+    bool has_size = !is_shrunk && plan_light_has_size(light, options->light_radius);
     found->sized_lights += has_size && !light->is_shadowless;
     found->sizeless_lights += !has_size && !light->is_shadowless;
     first_light(&found->sized, light, has_size && !light->is_shadowless);
     first_light(&found->sizeless, light, !has_size && !light->is_shadowless);
-    *makes_caustics = light_makes_caustics(scene, light);
+    *makes_caustics = light_makes_caustics(scene, options, light);
     found->caustic_lights += *makes_caustics;
     first_light(&found->light, light, true);
     first_light(&found->shadowing, light, !light->is_shadowless);
@@ -201,29 +178,6 @@ static void look_at_light(const Scene *scene, const PlanOptions *options, const 
 
 /* --- rows ------------------------------------------------------------------------------- */
 
-static bool row_set(PlanRow *row, bool is_on, Span why, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
-
-static bool row_set(PlanRow *row, bool is_on, Span why, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    vsnprintf(row->reason, sizeof row->reason, format, args);
-    va_end(args);
-    row->is_on = is_on;
-    row->why = why;
-    return is_on;
-}
-
-/* Rule a row out for the quality asked for; returns whether it was. */
-static bool row_below(PlanRow *row, int quality, int needed)
-{
-    if (quality >= needed)
-        return false;
-    row_set(row, false, SPAN_NONE, "quality %d (from %d on)", quality, needed);
-    return true;
-}
-
 static void plan_passes(const PlanOptions *options, PlanRow *row)
 {
     row_set(row, options->is_progressive, SPAN_NONE, "%s",
@@ -234,12 +188,15 @@ static void plan_passes(const PlanOptions *options, PlanRow *row)
 static void plan_paths(const PlanOptions *options, const Evidence *found, Plan *plan)
 {
     PlanRow *row = &plan->rows[FEATURE_PATHS], *caustics = &plan->rows[FEATURE_PATH_CAUSTICS];
-    bool has_paths = options->integrator == INTEGRATOR_PATH;
+    bool has_paths =
+        options->integrator == INTEGRATOR_PATH || options->effects[FEATURE_PATHS] == TRI_ON;
     if (!has_paths)
         row_set(row, false, SPAN_NONE, "not asked for (--integrator path)");
-    else if (!row_below(row, options->quality, QUALITY_PHOTONS))
+    else if (!row_ruled_out(options, FEATURE_PATHS, plan->rows))
         row_set(row, true, SPAN_NONE,
                 "asked for on the command line; finish ambient does not count");
+    if (row_ruled_out(options, FEATURE_PATH_CAUSTICS, plan->rows))
+        return;
     if (!row->is_on)
         row_set(caustics, false, SPAN_NONE, "no path tracing");
     else if (!found->bending)
@@ -262,17 +219,16 @@ static void plan_paths(const PlanOptions *options, const Evidence *found, Plan *
 }
 
 static void plan_caustics(const Scene *scene, const PlanOptions *options, const Evidence *found,
-                          bool has_paths, PlanRow *row)
+                          PlanRow *rows)
 {
     const PhotonSettings *photons = &scene->settings.photons;
-    if (row_below(row, options->quality, QUALITY_PHOTONS))
+    PlanRow *row = &rows[FEATURE_CAUSTIC_MAP];
+    if (row_ruled_out(options, FEATURE_CAUSTIC_MAP, rows))
         return;
     if (!found->transmitting && !found->reflecting)
         row_set(row, false, SPAN_NONE, "no surface reflects or transmits");
-    else if (has_paths)
+    else if (rows[FEATURE_PATHS].is_on)
         row_set(row, false, SPAN_NONE, "path tracing finds that light itself");
-    else if (options->has_no_photons)
-        row_set(row, false, SPAN_NONE, "switched off on the command line");
     else if (!photons->is_on)
         row_set(row, false, SPAN_NONE,
                 "no photons{} in global_settings: transparent objects cast filtered shadows");
@@ -301,10 +257,24 @@ static const Surface *glowing_surface(const Scene *scene, const Plan *plan)
     return NULL;
 }
 
-static bool sky_shines(const Scene *scene)
+static bool sky_shines(const Scene *scene, const PlanOptions *options)
 {
     Color5 c = scene->background.color;
-    return scene->sky.pigment_count > 0 || !rgb_is_black(rgb_scale(color5_rgb(c), 1 - c.transmit));
+    bool has_sky = scene->sky.pigment_count > 0 && options->effects[FEATURE_SKY] != TRI_OFF;
+    return has_sky || !rgb_is_black(rgb_scale(color5_rgb(c), 1 - c.transmit));
+}
+
+/* How indirect light is found: as the effects that are forced have it, else as asked for. */
+static IndirectMethod indirect_method(const PlanOptions *options, const PmsSettings *pms)
+{
+    Tri gather = options->effects[FEATURE_FINAL_GATHER];
+    Tri cache = options->effects[FEATURE_IRRADIANCE_CACHE];
+    IndirectMethod method = options->indirect ? options->indirect : pms->method;
+    if (gather == TRI_OFF)
+        return INDIRECT_MAP;
+    if (cache == TRI_ON || (gather == TRI_ON && method == INDIRECT_MAP))
+        method = INDIRECT_CACHE;
+    return cache == TRI_OFF && method != INDIRECT_MAP ? INDIRECT_GATHER : method;
 }
 
 static void plan_indirect_method(const Scene *scene, const PlanOptions *options, Plan *plan)
@@ -316,38 +286,53 @@ static void plan_indirect_method(const Scene *scene, const PlanOptions *options,
     PlanRow *gather = &plan->rows[FEATURE_FINAL_GATHER];
     PlanRow *cache = &plan->rows[FEATURE_IRRADIANCE_CACHE];
     const PlanRow *map = &plan->rows[FEATURE_GLOBAL_MAP];
-    IndirectMethod method = options->indirect ? options->indirect : pms->method;
+    IndirectMethod method = indirect_method(options, pms);
     bool is_progressive = plan_has(plan, FEATURE_PROGRESSIVE);
     const char *asked = options->indirect ? "asked for on the command line"
                         : pms->method     ? "gi_method in pms{}"
                                       : "the way indirect light is found if nothing else is said";
-    if (!map->is_on || method == INDIRECT_MAP) {
-        const char *why = off[map->is_on];
-        row_set(gather, false, SPAN_NONE, "%s", why);
-        row_set(cache, false, SPAN_NONE, "%s", why);
-        return;
-    }
-    row_set(gather, true, map->why, "%s", asked);
-    bool has_cache = method != INDIRECT_GATHER && !is_progressive;
-    row_set(cache, has_cache, map->why, "%s", has_cache ? asked : off[is_progressive ? 3 : 2]);
+    bool has_gather = map->is_on && method != INDIRECT_MAP;
+    bool has_cache = has_gather && method != INDIRECT_GATHER && !is_progressive;
+    if (!row_ruled_out(options, FEATURE_FINAL_GATHER, plan->rows))
+        row_set(gather, has_gather, has_gather ? map->why : SPAN_NONE, "%s",
+                has_gather ? asked : off[map->is_on]);
+    if (!row_ruled_out(options, FEATURE_IRRADIANCE_CACHE, plan->rows))
+        row_set(cache, has_cache, has_gather ? map->why : SPAN_NONE, "%s",
+                has_cache ? asked
+                          : off[!has_gather      ? map->is_on
+                                : is_progressive ? 3
+                                                 : 2]);
 }
 
-static void plan_glow(const Scene *scene, Plan *plan)
+static void plan_glow(const Scene *scene, const PlanOptions *options, Plan *plan)
 {
     bool is_indirect = plan_has(plan, FEATURE_GLOBAL_MAP);
     const char *none = plan_has(plan, FEATURE_PATHS) ? "path tracing finds that light itself"
                                                      : "no indirect light";
     const Surface *s = is_indirect ? glowing_surface(scene, plan) : NULL;
-    bool is_sky = is_indirect && sky_shines(scene);
-    row_set(&plan->rows[FEATURE_GLOW], s, s ? s->span : SPAN_NONE, "%s",
-            s             ? "a finish that gives off light"
-            : is_indirect ? "no finish that casts a shadow gives off light"
-                          : none);
-    row_set(&plan->rows[FEATURE_SKY_LIGHT], is_sky,
-            scene->sky.pigment_count > 0 ? scene->sky.span : scene->background.span, "%s",
-            is_sky        ? "sky_sphere or background that is not black"
-            : is_indirect ? "the background is black"
-                          : none);
+    bool is_sky = is_indirect && sky_shines(scene, options);
+    if (!row_ruled_out(options, FEATURE_GLOW, plan->rows))
+        row_set(&plan->rows[FEATURE_GLOW], s, s ? s->span : SPAN_NONE, "%s",
+                s             ? "a finish that gives off light"
+                : is_indirect ? "no finish that casts a shadow gives off light"
+                              : none);
+    if (!row_ruled_out(options, FEATURE_SKY_LIGHT, plan->rows))
+        row_set(&plan->rows[FEATURE_SKY_LIGHT], is_sky,
+                scene->sky.pigment_count > 0 ? scene->sky.span : scene->background.span, "%s",
+                is_sky        ? "sky_sphere or background that is not black"
+                : is_indirect ? "the background is black"
+                              : none);
+}
+
+/* Does the command line force an effect on that is there with indirect light only? */
+static bool forces_indirect(const PlanOptions *options)
+{
+    static const FeatureId needing[] = {FEATURE_GLOBAL_MAP, FEATURE_FINAL_GATHER,
+                                        FEATURE_IRRADIANCE_CACHE, FEATURE_GLOW, FEATURE_SKY_LIGHT};
+    bool forces = false;
+    for (size_t i = 0; i < sizeof needing / sizeof *needing; i++)
+        forces |= options->effects[needing[i]] == TRI_ON;
+    return forces;
 }
 
 static void plan_indirect(const Scene *scene, const PlanOptions *options, const Evidence *found,
@@ -356,54 +341,39 @@ static void plan_indirect(const Scene *scene, const PlanOptions *options, const 
     const PmsSettings *pms = &scene->settings.pms;
     const RadiositySettings *radiosity = &scene->settings.radiosity;
     PlanRow *row = &plan->rows[FEATURE_GLOBAL_MAP];
-    bool is_asked = options->has_indirect || pms->has_indirect || radiosity->is_on;
+    bool is_line = options->has_indirect || forces_indirect(options);
+    bool is_asked = is_line || pms->has_indirect || radiosity->is_on;
     bool has_paths = plan_has(plan, FEATURE_PATHS);
     bool is_old = radiosity->is_on && scene->settings.version < 3.7;
-    bool may_be =
-        options->quality >= QUALITY_PHOTONS && is_asked && !has_paths && !options->has_no_photons;
+    bool is_off = row_ruled_out(options, FEATURE_GLOBAL_MAP, plan->rows);
+    bool may_be = !is_off && is_asked && !has_paths;
     plan->has_ambient = !has_paths && (!may_be || is_old);
-    bool has_light = found->light || sky_shines(scene) || glowing_surface(scene, plan) ||
+    bool has_light = found->light || sky_shines(scene, options) || glowing_surface(scene, plan) ||
                      plan_media_glow(scene);
-    if (row_below(row, options->quality, QUALITY_PHOTONS))
+    if (is_off)
         return;
     if (has_paths)
         row_set(row, false, SPAN_NONE, "path tracing finds that light itself");
     else if (!is_asked)
         row_set(row, false, SPAN_NONE, "not asked for (gi, radiosity)");
-    else if (options->has_no_photons)
-        row_set(row, false, SPAN_NONE, "switched off on the command line");
     else if (!has_light || scene->surface_count == 0)
         row_set(row, false, pms->has_indirect ? pms->span : radiosity->span,
                 "asked for, but there is no light or no surface");
     else
         row_set(row, true, pms->has_indirect ? pms->span : radiosity->span, "%s; finish ambient %s",
-                options->has_indirect ? "asked for on the command line"
-                : pms->has_indirect   ? "gi in pms{}"
-                                      : "radiosity{}",
+                is_line             ? "asked for on the command line"
+                : pms->has_indirect ? "gi in pms{}"
+                                    : "radiosity{}",
                 is_old ? "counts as emission" : "does not count");
     plan->has_ambient = !has_paths && (!row->is_on || is_old);
 }
 
-static void plan_lights(const PlanOptions *options, const Evidence *found, Plan *plan)
+static void plan_filtered_shadows(const PlanOptions *options, const Evidence *found, Plan *plan)
 {
-    PlanRow *rows = plan->rows;
-    int quality = options->quality;
-    if (!row_below(&rows[FEATURE_LIGHTS], quality, QUALITY_LIGHTS))
-        row_set(&rows[FEATURE_LIGHTS], found->light, found->light ? found->light->span : SPAN_NONE,
-                "%s", found->light ? "a light source" : "no light source");
-
-    PlanRow *row = &rows[FEATURE_SHADOWS];
-    if (!row_below(row, quality, QUALITY_SHADOWS)) {
-        bool is_on = found->shadowing && found->blocking;
-        row_set(row, is_on, is_on ? found->shadowing->span : SPAN_NONE, "%s",
-                is_on               ? "a light that casts shadows"
-                : !found->shadowing ? "no light casts shadows"
-                                    : "no object casts a shadow");
-    }
-    bool has_shadows = row->is_on;
-
-    row = &rows[FEATURE_TRANSPARENT_SHADOWS];
-    if (!has_shadows)
+    PlanRow *row = &plan->rows[FEATURE_TRANSPARENT_SHADOWS];
+    if (row_ruled_out(options, FEATURE_TRANSPARENT_SHADOWS, plan->rows))
+        return;
+    if (!plan_has(plan, FEATURE_SHADOWS))
         row_set(row, false, SPAN_NONE, "no shadow rays");
     else if (plan_has(plan, FEATURE_PATHS))
         row_set(row, found->clear, found->clear ? found->clear->span : SPAN_NONE, "%s",
@@ -413,9 +383,28 @@ static void plan_lights(const PlanOptions *options, const Evidence *found, Plan 
         row_set(row, found->filtering, found->filtering ? found->filtering->span : SPAN_NONE, "%s",
                 found->filtering ? "an object that casts a shadow may transmit light"
                                  : "every object that casts a shadow is opaque");
+}
 
+static void plan_lights(const PlanOptions *options, const Evidence *found, Plan *plan)
+{
+    PlanRow *rows = plan->rows;
+    if (!row_ruled_out(options, FEATURE_LIGHTS, rows))
+        row_set(&rows[FEATURE_LIGHTS], found->light, found->light ? found->light->span : SPAN_NONE,
+                "%s", found->light ? "a light source" : "no light source");
+
+    PlanRow *row = &rows[FEATURE_SHADOWS];
+    if (!row_ruled_out(options, FEATURE_SHADOWS, rows)) {
+        bool is_on = found->shadowing && found->blocking;
+        row_set(row, is_on, is_on ? found->shadowing->span : SPAN_NONE, "%s",
+                is_on               ? "a light that casts shadows"
+                : !found->shadowing ? "no light casts shadows"
+                                    : "no object casts a shadow");
+    }
+    bool has_shadows = row->is_on;
+
+    plan_filtered_shadows(options, found, plan);
     row = &rows[FEATURE_AREA_LIGHTS];
-    if (row_below(row, quality, QUALITY_AREA_LIGHTS))
+    if (row_ruled_out(options, FEATURE_AREA_LIGHTS, rows))
         return;
     if (found->area && !has_shadows && !found->lit_area)
         row_set(row, false, found->area->span, "area_light, but no object casts a shadow");
@@ -424,10 +413,11 @@ static void plan_lights(const PlanOptions *options, const Evidence *found, Plan 
                 found->area ? "area_light" : "no area_light that casts shadows");
 }
 
-static void plan_dispersion(const PlanOptions *options, const Evidence *found, PlanRow *row)
+static void plan_dispersion(const PlanOptions *options, const Evidence *found, PlanRow *rows)
 {
     const Surface *s = found->dispersing;
-    if (row_below(row, options->quality, QUALITY_REFRACTION))
+    PlanRow *row = &rows[FEATURE_DISPERSION];
+    if (row_ruled_out(options, FEATURE_DISPERSION, rows))
         return;
     if (!s)
         row_set(row, false, SPAN_NONE, "no transparent object has dispersion");
@@ -443,22 +433,23 @@ static void plan_dispersion(const PlanOptions *options, const Evidence *found, P
 static void plan_surfaces(const PlanOptions *options, const Evidence *found, PlanRow *rows)
 {
     const Surface *s = found->reflecting;
-    if (!row_below(&rows[FEATURE_REFLECTION], options->quality, QUALITY_REFLECTION))
+    if (!row_ruled_out(options, FEATURE_REFLECTION, rows))
         row_set(&rows[FEATURE_REFLECTION], s, s ? s->span : SPAN_NONE, "%s",
                 s ? "a finish with reflection" : "no finish reflects");
 
     s = found->transmitting;
-    if (!row_below(&rows[FEATURE_REFRACTION], options->quality, QUALITY_REFRACTION))
+    if (!row_ruled_out(options, FEATURE_REFRACTION, rows))
         row_set(&rows[FEATURE_REFRACTION], s, s ? s->span : SPAN_NONE, "%s",
                 s ? "a pigment with filter or transmit" : "no pigment has filter or transmit");
 
-    plan_dispersion(options, found, &rows[FEATURE_DISPERSION]);
+    plan_dispersion(options, found, rows);
     s = found->absorbing;
-    row_set(&rows[FEATURE_ABSORPTION], s, s ? s->span : SPAN_NONE, "%s",
-            s ? "an interior with fade_distance" : "no transparent object has fade_distance");
+    if (!row_ruled_out(options, FEATURE_ABSORPTION, rows))
+        row_set(&rows[FEATURE_ABSORPTION], s, s ? s->span : SPAN_NONE, "%s",
+                s ? "an interior with fade_distance" : "no transparent object has fade_distance");
 
     s = found->highlighted;
-    if (!row_below(&rows[FEATURE_HIGHLIGHTS], options->quality, QUALITY_LIGHTS)) {
+    if (!row_ruled_out(options, FEATURE_HIGHLIGHTS, rows)) {
         bool is_on = s && found->shadowing;
         row_set(&rows[FEATURE_HIGHLIGHTS], is_on, is_on ? s->span : SPAN_NONE, "%s",
                 is_on ? "a finish with phong or specular"
@@ -467,17 +458,19 @@ static void plan_surfaces(const PlanOptions *options, const Evidence *found, Pla
     }
 }
 
-static void plan_camera_and_sky(const Scene *scene, PlanRow *rows)
+static void plan_camera_and_sky(const Scene *scene, const PlanOptions *options, PlanRow *rows)
 {
     const Camera *camera = &scene->camera;
     bool is_blurred = camera->aperture != 0 && camera->blur_samples > 0;
-    row_set(&rows[FEATURE_FOCAL_BLUR], is_blurred, camera->span, "%s",
-            is_blurred              ? "camera with aperture and blur_samples"
-            : camera->aperture != 0 ? "camera with aperture, but no blur_samples"
-                                    : "camera without aperture");
+    if (!row_ruled_out(options, FEATURE_FOCAL_BLUR, rows))
+        row_set(&rows[FEATURE_FOCAL_BLUR], is_blurred, camera->span, "%s",
+                is_blurred              ? "camera with aperture and blur_samples"
+                : camera->aperture != 0 ? "camera with aperture, but no blur_samples"
+                                        : "camera without aperture");
     bool has_sky = scene->sky.pigment_count > 0;
-    row_set(&rows[FEATURE_SKY], has_sky, scene->sky.span, "%s",
-            has_sky ? "sky_sphere" : "no sky_sphere");
+    if (!row_ruled_out(options, FEATURE_SKY, rows))
+        row_set(&rows[FEATURE_SKY], has_sky, scene->sky.span, "%s",
+                has_sky ? "sky_sphere" : "no sky_sphere");
 }
 
 static long global_photons(const Scene *scene)
@@ -500,19 +493,18 @@ Status plan_make(const Scene *scene, const PlanOptions *options, Arena *arena, P
 
     plan_passes(options, &out->rows[FEATURE_PROGRESSIVE]);
     plan_paths(options, &found, out);
-    bool has_paths = plan_has(out, FEATURE_PATHS);
-    plan_caustics(scene, options, &found, has_paths, &out->rows[FEATURE_CAUSTIC_MAP]);
+    plan_caustics(scene, options, &found, out->rows);
     plan_indirect(scene, options, &found, out);
     plan_indirect_method(scene, options, out);
-    plan_glow(scene, out);
+    plan_glow(scene, options, out);
     plan_lights(options, &found, out);
     plan_surfaces(options, &found, out->rows);
-    plan_camera_and_sky(scene, out->rows);
-    plan_media(scene, options->quality, out->rows);
+    plan_camera_and_sky(scene, options, out->rows);
+    plan_media(scene, options, out->rows);
+    plan_volume(scene, options, out);
+    rows_tell_forced(options, out->rows);
 
-    plan_volume(scene, out);
-
-    out->is_unlit = options->quality < QUALITY_LIGHTS;
+    out->is_unlit = !row_has_quality(options, FEATURE_LIGHTS);
     out->light_radius = options->light_radius;
     if (plan_has(out, FEATURE_CAUSTIC_MAP))
         out->caustic_photons = scene->settings.photons.count;

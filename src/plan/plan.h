@@ -8,7 +8,7 @@
 #include "scene/scene.h"
 
 typedef enum FeatureId {
-#define X(id, name, text) id,
+#define X(id, name, aliases, quality, text) id,
 #include "plan/feature.def"
 #undef X
     FEATURE_COUNT
@@ -17,6 +17,7 @@ typedef enum FeatureId {
 typedef struct PlanRow {
     bool is_on;
     Span why;           /* what asked for it, or what rules it out; may be SPAN_NONE */
+    Tri forced;         /* what the command line says, if anything */
     char reason[160];   /* in words: "object with refraction, photons { target }" */
 } PlanRow;
 
@@ -30,8 +31,8 @@ typedef struct PlanOptions {
     bool is_progressive;    /* --progressive */
     bool has_indirect;      /* --gi */
     IndirectMethod indirect; /* how; INDIRECT_ANY: as the scene says */
-    bool has_no_photons;    /* --no-photons */
-    int quality;            /* POV's +Q, 0 to 9 */
+    int quality;            /* POV's +Q, 0 to 9: leaves out what wants more */
+    Tri effects[FEATURE_COUNT]; /* --effect: forced on or off, whatever scene and quality say */
 } PlanOptions;
 
 #define PLAN_OPTIONS_DEFAULT ((PlanOptions){.quality = 9})
@@ -54,9 +55,19 @@ typedef struct Plan {
 /* Make the plan.  Memory comes from `arena`.  ERR_MEMORY or OK. */
 Status plan_make(const Scene *scene, const PlanOptions *options, Arena *arena, Plan *out);
 
+/* ERR_USAGE, after a message for each, if effects were forced on that this scene cannot have. */
+Status plan_check(const Plan *plan, Diag *diag);
+
 static inline bool plan_has(const Plan *plan, FeatureId feature)
 {
     return plan->rows[feature].is_on;
+}
+
+/* Return true if the command line forces an effect off: there are those that path tracing has
+ * without a row that is on. */
+static inline bool plan_forbids(const Plan *plan, FeatureId feature)
+{
+    return plan->rows[feature].forced == TRI_OFF;
 }
 
 /* Return true if paths can meet a light: one with an area, or any if lights have a radius. */
@@ -87,5 +98,10 @@ bool plan_surface_glows(const Plan *plan, const Surface *surface);
 /* Return the name of a feature as explain and --stats show it. */
 const char *feature_name(FeatureId feature);
 const char *feature_text(FeatureId feature);
+
+/* Find an effect by its name or one of its other names; FEATURE_COUNT: there is none. */
+FeatureId feature_find(const char *name, size_t length);
+/* Return the other names of an effect, with spaces between. */
+const char *feature_aliases(FeatureId feature);
 
 #endif

@@ -2,17 +2,6 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "plan/plan_int.h"
 
-#include <stdio.h>
-
-/* Quality from which on there are media, fog and rainbows. */
-enum { QUALITY_MEDIA = 9 };
-
-static void set_row(PlanRow *row, bool is_on, Span why, const char *reason)
-{
-    *row = (PlanRow){.is_on = is_on, .why = why};
-    snprintf(row->reason, sizeof row->reason, "%s", reason);
-}
-
 static const Medium *first_seen(const Medium *const *media, int count)
 {
     for (int i = 0; i < count; i++)
@@ -38,11 +27,11 @@ static void plan_medium(const Scene *scene, PlanRow *row)
     const Medium *air = first_seen(scene->atmosphere.media, scene->atmosphere.media_count);
     const Medium *inside = first_contained(scene);
     if (air)
-        set_row(row, true, air->span, "media of the atmosphere");
+        row_set(row, true, air->span, "media of the atmosphere");
     else if (inside)
-        set_row(row, true, inside->span, "media in a hollow object");
+        row_set(row, true, inside->span, "media in a hollow object");
     else
-        set_row(row, false, SPAN_NONE, "no media, or only in objects that are not hollow");
+        row_set(row, false, SPAN_NONE, "no media, or only in objects that are not hollow");
 }
 
 static void plan_fog(const Scene *scene, PlanRow *row)
@@ -50,10 +39,10 @@ static void plan_fog(const Scene *scene, PlanRow *row)
     const Atmosphere *air = &scene->atmosphere;
     for (int i = 0; i < air->fog_count; i++)
         if (air->fogs[i]->distance > 0) {
-            set_row(row, true, air->fogs[i]->span, "a fog");
+            row_set(row, true, air->fogs[i]->span, "a fog");
             return;
         }
-    set_row(row, false, SPAN_NONE, air->fog_count > 0 ? "a fog without distance" : "no fog");
+    row_set(row, false, SPAN_NONE, "%s", air->fog_count > 0 ? "a fog without distance" : "no fog");
 }
 
 static void plan_rainbow(const Scene *scene, PlanRow *row)
@@ -61,23 +50,21 @@ static void plan_rainbow(const Scene *scene, PlanRow *row)
     const Atmosphere *air = &scene->atmosphere;
     for (int i = 0; i < air->rainbow_count; i++)
         if (air->rainbows[i]->map) {
-            set_row(row, true, air->rainbows[i]->span, "a rainbow");
+            row_set(row, true, air->rainbows[i]->span, "a rainbow");
             return;
         }
-    set_row(row, false, SPAN_NONE,
+    row_set(row, false, SPAN_NONE, "%s",
             air->rainbow_count > 0 ? "a rainbow without color_map" : "no rainbow");
 }
 
-void plan_media(const Scene *scene, int quality, PlanRow *rows)
+void plan_media(const Scene *scene, const PlanOptions *options, PlanRow *rows)
 {
-    plan_medium(scene, &rows[FEATURE_MEDIA]);
-    plan_fog(scene, &rows[FEATURE_FOG]);
-    plan_rainbow(scene, &rows[FEATURE_RAINBOW]);
-    for (int i = FEATURE_MEDIA; i <= FEATURE_RAINBOW && quality < QUALITY_MEDIA; i++) {
-        set_row(&rows[i], false, SPAN_NONE, "");
-        snprintf(rows[i].reason, sizeof rows[i].reason, "quality %d (from %d on)", quality,
-                 QUALITY_MEDIA);
-    }
+    if (!row_ruled_out(options, FEATURE_MEDIA, rows))
+        plan_medium(scene, &rows[FEATURE_MEDIA]);
+    if (!row_ruled_out(options, FEATURE_FOG, rows))
+        plan_fog(scene, &rows[FEATURE_FOG]);
+    if (!row_ruled_out(options, FEATURE_RAINBOW, rows))
+        plan_rainbow(scene, &rows[FEATURE_RAINBOW]);
 }
 
 static bool any_glows(const Medium *const *media, int count)
@@ -119,23 +106,27 @@ static bool has_collecting(const Scene *scene)
     return found;
 }
 
-void plan_volume(const Scene *scene, Plan *plan)
+void plan_volume(const Scene *scene, const PlanOptions *options, Plan *plan)
 {
     PlanRow *row = &plan->rows[FEATURE_VOLUME_MAP];
     const PhotonSettings *photons = &scene->settings.photons;
+    bool is_forced = options->effects[FEATURE_VOLUME_MAP] == TRI_ON;
+    if (row_ruled_out(options, FEATURE_VOLUME_MAP, plan->rows))
+        return;
     if (!plan_has(plan, FEATURE_MEDIA) || !has_collecting(scene)) {
-        set_row(row, false, SPAN_NONE, "no media scatter light and collect photons");
+        row_set(row, false, SPAN_NONE, "no media scatter light and collect photons");
         return;
     }
-    plan->has_volume_focus = plan_has(plan, FEATURE_CAUSTIC_MAP) && photons->media_steps > 0;
+    plan->has_volume_focus =
+        plan_has(plan, FEATURE_CAUSTIC_MAP) && (photons->media_steps > 0 || is_forced);
     plan->has_volume_indirect = plan_has(plan, FEATURE_GLOBAL_MAP);
     if (plan->has_volume_focus)
-        set_row(row, true, photons->span,
-                plan->has_volume_indirect ? "media in photons{}, and indirect light"
-                                          : "media in photons{}: light that targets focus");
+        row_set(row, true, photons->span, "%s%s",
+                photons->media_steps > 0 ? "media in photons{}" : "media",
+                plan->has_volume_indirect ? ", and indirect light" : ": light that targets focus");
     else if (plan->has_volume_indirect)
-        set_row(row, true, plan->rows[FEATURE_GLOBAL_MAP].why,
+        row_set(row, true, plan->rows[FEATURE_GLOBAL_MAP].why,
                 "indirect light: what media scatter more than once");
     else
-        set_row(row, false, SPAN_NONE, "no media steps in photons{}, and no indirect light");
+        row_set(row, false, SPAN_NONE, "no media steps in photons{}, and no indirect light");
 }

@@ -52,6 +52,21 @@ static void add_layers(char settings[CHECKPOINT_SETTINGS_MAX], unsigned layers)
     add_line(settings, layers ? "\n" : " none\n");
 }
 
+/* The effects that are forced. */
+static void add_effects(char settings[CHECKPOINT_SETTINGS_MAX], const PlanOptions *plan)
+{
+    const char *before = " ";
+    add_line(settings, "effects");
+    for (int i = 0; i < FEATURE_COUNT; i++) {
+        if (plan->effects[i] == TRI_UNSET)
+            continue;
+        add_line(settings, "%s%s=%s", before, feature_name((FeatureId)i),
+                 plan->effects[i] == TRI_ON ? "on" : "off");
+        before = ",";
+    }
+    add_line(settings, *before == ' ' ? " as_planned\n" : "\n");
+}
+
 void checkpoint_describe(const Scene *scene, const RenderOptions *options,
                          char settings[CHECKPOINT_SETTINGS_MAX])
 {
@@ -73,7 +88,7 @@ void checkpoint_describe(const Scene *scene, const RenderOptions *options,
     add_line(settings, "light_radius %.17g\n", plan->light_radius);
     add_line(settings, "gi %s\n", plan->has_indirect ? "on" : "off");
     add_line(settings, "gi_method %s\n", methods[plan->indirect]);
-    add_line(settings, "photons %s\n", plan->has_no_photons ? "off" : "on");
+    add_effects(settings, plan);
     add_line(settings, "quality %d\n", plan->quality);
 }
 

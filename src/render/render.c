@@ -90,6 +90,7 @@ Status render_scene(const Scene *scene, const RenderOptions *options, Diag *diag
     TRY(check_options(options, diag));
     if (plan_make(scene, &options->plan, scene->arena, &out->plan) != OK)
         return diag_no_memory(diag, "the plan");
+    TRY(plan_check(&out->plan, diag));
     warn_of_missing(&out->plan, diag);
     Status status = make_tracer(scene, options, diag, out, &tracer);
     if (status == OK && options->plan.is_progressive)
@@ -114,6 +115,7 @@ Status render_explain(const Scene *scene, const RenderOptions *options, Diag *di
     *books = (PhotonBooks){0};
     if (plan_make(scene, &options->plan, arena, plan) != OK)
         return diag_no_memory(diag, "the plan");
+    TRY(plan_check(plan, diag));
     if (!pass_needs_photons(plan))
         return OK;
     Tracer *tracer = NULL;

@@ -247,6 +247,24 @@ static void check_air(const Scene *scene, Diag *diag)
     }
 }
 
+/* Photons to send at targets when the scene does not say how many. */
+enum { ADDED_PHOTONS = 200000 };
+
+void scene_add_photons(Scene *scene)
+{
+    PhotonSettings *photons = &scene->settings.photons;
+    bool has_target = false;
+    if (photons->is_on)
+        return;
+    photons->is_on = true;
+    photons->count = ADDED_PHOTONS;
+    for (uint32_t i = 0; i < scene->surface_count; i++)
+        has_target |= scene->surfaces[i].is_target;
+    if (!has_target)
+        mark_specular_targets(scene);
+    set_object_flags(scene);
+}
+
 Status scene_check(Scene *scene, Diag *diag)
 {
     for (uint32_t i = 0; i < scene->surface_count; i++) {

@@ -232,4 +232,8 @@ void scene_free(Scene *scene);
  * problem is reported, ERR_SCENE follows if any is an error. */
 Status scene_check(Scene *scene, Diag *diag);
 
+/* Do as if photons { count ... } stood in a checked scene that has no photons{}: what reflects or
+ * refracts becomes a target, if none is marked. */
+void scene_add_photons(Scene *scene);
+
 #endif

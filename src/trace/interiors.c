@@ -195,6 +195,7 @@ void interiors_at(const Tracer *tracer, V3 p, Interiors *out)
     out->count = 0;
     out->wavelength = 0;
     out->left_out = 0;
+    out->is_clear = plan_forbids(tracer->plan, FEATURE_ABSORPTION);
     for (uint32_t k = 0; k < tracer->clear_count; k++) {
         uint32_t i = tracer->clear[k];
         const Object *object = &tracer->scene->objects[i];

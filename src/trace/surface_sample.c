@@ -112,7 +112,7 @@ static void sample_reflection(Sampling *s, SurfaceLayer *layer, float weight, Rg
     Rgb r = reflectivity(s, finish, layer->color);
     if (finish->conserves_energy)
         *filter = rgb_mul(*filter, rgb(1 - fminf(1, r.r), 1 - fminf(1, r.g), 1 - fminf(1, r.b)));
-    if (rgb_is_black(r))
+    if (rgb_is_black(r) || plan_forbids(s->tracer->plan, FEATURE_REFLECTION))
         return;
     layer->reflect_dir = mirror_of(s);
     if (finish->irid != 0)
@@ -331,7 +331,8 @@ void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit, const I
     sample_surface(&s, &choice);
     if (hit->tie_count > 0)
         sample_ties(&s);
-    out->has_transmission = fabsf(rgb_grey(out->filter)) > (float)out->settings->adc_bailout;
+    out->has_transmission = fabsf(rgb_grey(out->filter)) > (float)out->settings->adc_bailout &&
+                            !plan_forbids(tracer->plan, FEATURE_REFRACTION);
     if (out->has_transmission) {
         sample_transmission(&s);
         thread->stats.count[STAT_INTERIORS_CUT] += out->inside_after.left_out > 0;

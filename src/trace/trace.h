@@ -97,6 +97,7 @@ typedef struct Interiors {
     int count;
     float wavelength; /* nm: of light that was dispersed; 0: all wavelengths together */
     int left_out;     /* more that it is inside of, the outermost: there was no room */
+    bool is_clear;    /* absorption is left out */
     const Interior *in[INTERIORS_MAX];
     uint32_t
         object[INTERIORS_MAX]; /* the surface's object: entering and leaving are paired by it */
@@ -109,6 +110,7 @@ static inline void interiors_copy(Interiors *to, const Interiors *from)
     to->count = from->count;
     to->wavelength = from->wavelength;
     to->left_out = from->left_out;
+    to->is_clear = from->is_clear;
     memcpy(to->in, from->in, FEW * sizeof *to->in);
     memcpy(to->object, from->object, FEW * sizeof *to->object);
     if (from->count > FEW) {
@@ -127,7 +129,8 @@ void interiors_at(const Tracer *tracer, V3 p, Interiors *out);
  * of a ray or photon is absorbed so, whatever it ends at. */
 static inline Rgb interiors_fade(const Interiors *inside, double t)
 {
-    return inside->count > 0 ? interior_fade(inside->in[inside->count - 1], t, false) : RGB_WHITE;
+    bool absorbs = inside->count > 0 && !inside->is_clear;
+    return absorbs ? interior_fade(inside->in[inside->count - 1], t, false) : RGB_WHITE;
 }
 
 /* One layer of a surface, evaluated.  Colours are pov-facts' symbols: see finish arithmetic in

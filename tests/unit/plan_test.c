@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "plan/plan.h"
 
+#include "quiet.h"
+
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -143,7 +145,8 @@ static void caustics_want_photons_a_light_and_a_target(void **state)
     assert_int_equal(s->plan.caustic_photons, 12345);
     assert_int_equal(s->plan.rows[FEATURE_CAUSTIC_MAP].why.begin, 3);
 
-    assert_false(has(s, (PlanOptions){.quality = 9, .has_no_photons = true}, FEATURE_CAUSTIC_MAP));
+    assert_false(has(s, (PlanOptions){.quality = 9, .effects[FEATURE_CAUSTIC_MAP] = TRI_OFF},
+                     FEATURE_CAUSTIC_MAP));
     assert_false(s->plan.light_makes_caustics[0]);
     assert_int_equal(s->plan.caustic_photons, 0);
     s->light.is_shadowless = true;
@@ -287,6 +290,65 @@ static void quality_switches_effects_off(void **state)
     assert_true(s->plan.is_unlit);
 }
 
+/* Options with one effect forced. */
+static PlanOptions forcing(int quality, FeatureId feature, Tri wanted)
+{
+    PlanOptions options = {.quality = quality};
+    options.effects[feature] = wanted;
+    return options;
+}
+
+static void the_command_line_forces_effects(void **state)
+{
+    Small *s = *state;
+    s->surface.may_transmit = s->surface.may_reflect = true;
+    s->finish.phong = 1;
+    s->finish.emission = rgb(1, 0, 0);
+    const PlanRow *rows = s->plan.rows;
+    for (int i = 0; i < FEATURE_COUNT; i++) {
+        assert_false(has(s, forcing(9, (FeatureId)i, TRI_OFF), (FeatureId)i));
+        assert_string_equal(rows[i].reason, i == FEATURE_PATHS || i == FEATURE_PROGRESSIVE
+                                                ? rows[i].reason
+                                                : "switched off on the command line");
+        assert_true(plan_forbids(&s->plan, (FeatureId)i));
+    }
+    assert_true(has(s, forcing(0, FEATURE_REFLECTION, TRI_ON), FEATURE_REFLECTION));
+    assert_non_null(strstr(rows[FEATURE_REFLECTION].reason, "asked for on the command line: "));
+    assert_true(has(s, forcing(9, FEATURE_PATHS, TRI_ON), FEATURE_PATHS));
+    assert_true(has(s, forcing(9, FEATURE_GLOW, TRI_ON), FEATURE_GLOW));
+    assert_true(plan_has(&s->plan, FEATURE_GLOBAL_MAP) && plan_has(&s->plan, FEATURE_FINAL_GATHER));
+    assert_true(has(s, forcing(9, FEATURE_IRRADIANCE_CACHE, TRI_ON), FEATURE_IRRADIANCE_CACHE));
+    PlanOptions options = forcing(9, FEATURE_FINAL_GATHER, TRI_OFF);
+    options.has_indirect = true;
+    assert_false(has(s, options, FEATURE_IRRADIANCE_CACHE));
+    assert_true(plan_has(&s->plan, FEATURE_GLOBAL_MAP));
+}
+
+static void an_effect_that_nothing_makes_cannot_be_forced(void **state)
+{
+    Small *s = *state;
+    Diag *diag = quiet();
+    assert_false(has(s, forcing(9, FEATURE_FOG, TRI_ON), FEATURE_FOG));
+    assert_int_equal(plan_check(&s->plan, diag), ERR_USAGE);
+    assert_non_null(strstr(last_message, "fog=on is not possible here: no fog"));
+    assert_true(has(s, forcing(9, FEATURE_LIGHTS, TRI_ON), FEATURE_LIGHTS));
+    assert_int_equal(plan_check(&s->plan, diag), OK);
+}
+
+static void effects_have_names(void **state)
+{
+    (void)state;
+    for (int i = 0; i < FEATURE_COUNT; i++) {
+        const char *name = feature_name((FeatureId)i);
+        assert_int_equal(feature_find(name, strlen(name)), i);
+    }
+    assert_int_equal(feature_find("gi=on", 2), FEATURE_GLOBAL_MAP);
+    assert_int_equal(feature_find("indirect", 8), FEATURE_GLOBAL_MAP);
+    assert_int_equal(feature_find("caustics", 8), FEATURE_CAUSTIC_MAP);
+    assert_int_equal(feature_find("caustic", 7), FEATURE_COUNT);
+    assert_int_equal(feature_find("", 0), FEATURE_COUNT);
+}
+
 static void highlights_want_a_light_that_makes_them(void **state)
 {
     Small *s = *state;
@@ -370,6 +432,9 @@ int main(void)
         PLAN_TEST(paths_leave_filters_to_shadow_rays),
         PLAN_TEST(transparent_shadows_want_a_transparent_blocker),
         PLAN_TEST(quality_switches_effects_off),
+        PLAN_TEST(the_command_line_forces_effects),
+        PLAN_TEST(an_effect_that_nothing_makes_cannot_be_forced),
+        PLAN_TEST(effects_have_names),
         PLAN_TEST(highlights_want_a_light_that_makes_them),
         PLAN_TEST(camera_sky_and_interior_have_their_rows),
         PLAN_TEST(media_fog_and_rainbows_have_their_rows),
