@@ -128,7 +128,7 @@ static double scene_end(const Tracer *tracer, const Ray *ray)
 void air_profile(EyeThread *eye, const MediaHere *here, const Ray *ray, double length,
                  MediaProfile *out)
 {
-    double end = isfinite(length) ? length : MEDIA_FAR;
+    double end = isfinite(length) ? length : eye->scene->atmosphere.media_end;
     media_profile(here, ray, 0, end, scene_end(eye->trace.tracer, ray), &eye->rng, out);
 }
 

@@ -9,6 +9,7 @@ static void set_defaults(Scene *scene)
     scene->camera = CAMERA_DEFAULT;
     scene->background.color.transmit = 1;
     scene->sky.emission = RGB_WHITE;
+    scene->atmosphere = ATMOSPHERE_DEFAULT;
     scene->settings = (SceneSettings){.version = 3.7,
                                       .assumed_gamma = 1,
                                       .ambient_light = RGB_WHITE,

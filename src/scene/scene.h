@@ -202,7 +202,10 @@ typedef struct Atmosphere {
     const Fog *const *fogs;
     const Rainbow *const *rainbows;
     int media_count, fog_count, rainbow_count;
+    double media_end; /* how far a ray that meets nothing goes through media, scene units */
 } Atmosphere;
+
+#define ATMOSPHERE_DEFAULT ((Atmosphere){.media_end = 2e10}) /* the language's */
 
 typedef struct Scene {
     Arena *arena;       /* all that is reached from here */

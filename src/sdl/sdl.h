@@ -4,6 +4,7 @@
 
 #include "base/file.h"
 #include "scene/scene.h"
+#include "scene/scene_transform.h"
 
 typedef struct SdlDeclare {
     const char *name;
@@ -24,6 +25,7 @@ typedef struct SdlOptions {
     long max_tokens;        /* tokens evaluated; 0: SDL_MAX_TOKENS */
     size_t max_bytes;       /* of the scene in memory while it is read; 0: what the machine has */
     int threads;            /* for building mesh indices */
+    const Similarity *moved_by; /* moves the whole scene once it is read; NULL: it stays */
 } SdlOptions;
 
 /* Return the i-th folder of pms's own include files ("" or one that does not exist: not here),

@@ -112,6 +112,8 @@ static void finish(Parser *p)
         parse_warn(p, WARN_LANGUAGE, SPAN_NONE,
                    "'%s' has no `#version`: it is read as older than 3.7%s", p->scene->path,
                    settings->is_gamma_off ? ", without gamma" : "");
+    if (p->options->moved_by && !scene_transform(&p->build, p->scene, p->options->moved_by))
+        parse_fail_status(p, diag_no_memory(p->diag, "the moved scene"));
     Status status = scene_build_finish(&p->build, p->scene, p->diag);
     if (status == OK)
         status = scene_check(p->scene, p->diag);

@@ -156,5 +156,7 @@ bool mesh_is_inside(const Shape *shape, V3 p)
 Bound mesh_bound(const Shape *shape)
 {
     Bound b = shape->u.mesh->bound;
-    return shape->is_transformed ? bound_pad(bound_transform(b, &shape->xform)) : b;
+    if (shape->is_transformed)
+        b = bound_transform(b, &shape->xform);
+    return shape->rounding.is_exact ? b : bound_pad(b);
 }

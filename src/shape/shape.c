@@ -216,14 +216,14 @@ static double world_error(const Shape *leaf, V3 p, double local_error)
 static void to_world(const Crossing *c, V3 p, double error, ShapePoint *out)
 {
     const Shape *leaf = c->leaf;
-    if (leaf->is_transformed) {
-        out->p = xform_point(&leaf->xform, p);
+    out->p = leaf->is_transformed ? xform_point(&leaf->xform, p) : p;
+    if (leaf->rounding.is_exact) {
+        double scale = leaf->xform.to[0][0];
+        out->p_error = 2 * scale * error + 8 * EPS_DOUBLE * v3_sum_abs(out->p);
+    } else {
         out->ng = v3_unit(xform_normal(&leaf->xform, out->ng));
         out->ns = v3_unit(xform_normal(&leaf->xform, out->ns));
         out->p_error = world_error(leaf, out->p, error);
-    } else {
-        out->p = p;
-        out->p_error = 2 * error + 8 * EPS_DOUBLE * v3_sum_abs(p);
     }
 }
 
@@ -247,7 +247,7 @@ void shape_point(const Crossing *crossing, const Ray *ray, ShapePoint *out)
         leaf_point(leaf, crossing->part, p, &local);
         out->ng = out->ns = local.n;
         to_world(crossing, local.p, local.error, out);
-        if (!leaf->is_transformed && leaf->kind == SHAPE_TORUS)
+        if (leaf->rounding.is_exact && leaf->kind == SHAPE_TORUS)
             out->ng = v3_unit(out->ng);
         out->ns = out->ng;
     }

@@ -78,6 +78,7 @@ typedef struct ShapeRounding {
     V3 offset;    /* magnitudes of the translation of xform.from */
     V3 column;    /* lengths of the columns of xform.to: scene units per object unit */
     double place; /* object units: rounding of the form's numbers */
+    bool is_exact; /* xform rounds nothing: it is none, or a scaling by a power of two */
 } ShapeRounding;
 
 struct Shape {

@@ -17,7 +17,7 @@
 /* A ray in the space of a leaf.  d is not unit. */
 typedef struct LocalRay {
     V3 o, d;
-    V3 o_error, d_error; /* bounds per axis; 0 for leaves without transform */
+    V3 o_error, d_error; /* bounds per axis; 0 where the transform is exact */
 } LocalRay;
 
 typedef struct LeafHit {
@@ -60,6 +60,10 @@ static inline void local_ray(const Shape *shape, const Ray *ray, LocalRay *out)
     double size = v3_sum_abs(ray->o);
     out->o = xform_point_back(&shape->xform, ray->o);
     out->d = xform_dir_back(&shape->xform, ray->d);
+    if (r->is_exact) {
+        out->o_error = out->d_error = v3(0, 0, 0);
+        return;
+    }
     out->o_error = v3_scale(v3_mad(r->offset, size, r->row), PLACE_EPS);
     out->d_error = v3_scale(r->row, PLACE_EPS);
 }

@@ -1,6 +1,29 @@
 /* Making shapes and changing them.  SPDX-License-Identifier: Apache-2.0 */
 #include "shape/shape_int.h"
 
+/* Is this a scaling along the axes, by positive factors, and a move? */
+static bool is_scale_and_move(const Xform *x)
+{
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            if (i == j ? !(x->to[i][j] > 0) : x->to[i][j] != 0)
+                return false;
+    return true;
+}
+
+static bool is_uniform(const Xform *x)
+{
+    return x->to[0][0] == x->to[1][1] && x->to[1][1] == x->to[2][2];
+}
+
+/* Is this nothing, or a scaling by a power of two alone?  Then no number of it is rounded. */
+static bool is_exact(const Xform *x)
+{
+    int exponent;
+    return is_scale_and_move(x) && is_uniform(x) && frexp(x->to[0][0], &exponent) == 0.5 &&
+           x->to[0][3] == 0 && x->to[1][3] == 0 && x->to[2][3] == 0;
+}
+
 /* Derive what a leaf's numbers say about their own rounding. */
 static void derive_rounding(Shape *s)
 {
@@ -33,6 +56,7 @@ static void derive_rounding(Shape *s)
         break; /* the others account for it per axis */
     }
     r->place = PLACE_EPS * size;
+    r->is_exact = is_exact(x);
 }
 
 static Shape *shape_new(Arena *arena, ShapeKind kind)
@@ -154,35 +178,31 @@ Shape *shape_csg(Arena *arena, ShapeKind kind, Shape **children, int child_count
     return shape;
 }
 
-/* Is this a scaling along the axes, by positive factors, and a move? */
-static bool is_scale_and_move(const Xform *x)
+/* Scaling alike in all directions leaves normals as they are, to the last bit: making them unit
+ * again would not. */
+static bool keeps_normals(const Xform *x)
 {
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            if (i == j ? !(x->to[i][j] > 0) : x->to[i][j] != 0)
-                return false;
-    return true;
+    return is_scale_and_move(x) && is_uniform(x);
 }
 
-static bool is_uniform(const Xform *x)
+static V3 transform_normal(V3 n, const Xform *x)
 {
-    return x->to[0][0] == x->to[1][1] && x->to[1][1] == x->to[2][2];
+    return keeps_normals(x) ? n : v3_unit(xform_normal(x, n));
 }
 
 static void transform_plane(PlaneParams *plane, const Xform *x)
 {
     V3 moved = v3(x->from[0][3], x->from[1][3], x->from[2][3]);
-    V3 n = xform_normal(x, plane->normal);
-    double length = v3_len(n);
+    double length = keeps_normals(x) ? x->from[0][0] : v3_len(xform_normal(x, plane->normal));
     plane->distance = (plane->distance - v3_dot(plane->normal, moved)) / length;
-    plane->normal = v3_scale(n, 1 / length);
+    plane->normal = transform_normal(plane->normal, x);
 }
 
 static void transform_triangle(TriangleParams *triangle, const Xform *x)
 {
     for (int i = 0; i < 3; i++) {
         triangle->corner[i] = xform_point(x, triangle->corner[i]);
-        triangle->normal[i] = v3_unit(xform_normal(x, triangle->normal[i]));
+        triangle->normal[i] = transform_normal(triangle->normal[i], x);
     }
 }
 

@@ -8,9 +8,6 @@
 
 #include "trace/trace.h"
 
-/* How far a ray that meets nothing goes through the atmosphere, scene units: the language's. */
-#define MEDIA_FAR 2e10
-
 /* The media in one place: lists of the interiors around it and of the atmosphere. */
 typedef struct MediaList {
     const Medium *const *media;
