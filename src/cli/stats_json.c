@@ -1,6 +1,7 @@
 /* --stats: the counters, times and photon books of a render, as JSON.
  * SPDX-License-Identifier: Apache-2.0 */
 #include "cli/cli.h"
+#include "render/cost.h"
 
 #include <inttypes.h>
 
@@ -85,6 +86,28 @@ static void print_passes(FILE *file, const RenderResult *result)
     fputs("},\n", file);
 }
 
+/* What was done for each effect, and its share of all the work. */
+static void print_work(FILE *file, const RenderResult *result)
+{
+    Costs costs;
+    const char *comma = "";
+    costs_find(&result->plan, &result->stats, &costs);
+    fputs("  \"work\": [", file);
+    for (int i = 0; i < COST_COUNT; i++) {
+        FeatureId feature = cost_feature(i);
+        bool is_any = feature == FEATURE_COUNT;
+        if (!is_any && !plan_has(&result->plan, feature))
+            continue;
+        fprintf(file, "%s\n    {\"effect\": %s%s%s, \"unit\": \"%s\", \"count\": %.0f, \"share\": ",
+                comma, is_any ? "" : "\"", is_any ? "null" : feature_name(feature),
+                is_any ? "" : "\"", cost_unit(i), costs.count[i]);
+        json_number(file, costs_share_of(&costs, i));
+        fputs("}", file);
+        comma = ",";
+    }
+    fputs("\n  ],\n", file);
+}
+
 void stats_print_json(FILE *file, const Scene *scene, const RenderResult *result)
 {
     fputs("{\n  \"program\": \"pms " PMS_VERSION "\",\n  \"scene\": ", file);
@@ -93,6 +116,7 @@ void stats_print_json(FILE *file, const Scene *scene, const RenderResult *result
     print_passes(file, result);
     print_seconds(file, &result->stats);
     print_counters(file, &result->stats);
+    print_work(file, result);
     fputs("  \"features\": {", file);
     for (int i = 0; i < FEATURE_COUNT; i++)
         fprintf(file, "%s\n    \"%s\": %s", i ? "," : "", feature_name((FeatureId)i),

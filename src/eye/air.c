@@ -125,11 +125,25 @@ static double scene_end(const Tracer *tracer, const Ray *ray)
     return fmax(along, 0) + 2 * radius;
 }
 
+Rgb air_shadow(EyeThread *eye, const EyeLight *light, V3 p, const LightSample *sample,
+               bool blocks_targets)
+{
+    if (!light->has_shadow)
+        return RGB_WHITE;
+    uint64_t *counts = eye->trace.stats.count, before = counts[STAT_SHADOW_RAYS];
+    ShapePoint from = {.p = p, .ng = sample->to_light, .ns = sample->to_light};
+    Rgb passed = trace_shadow(&eye->trace, &from, sample->to_light, sample->distance, light->index,
+                              blocks_targets);
+    counts[STAT_MEDIA_SHADOW_RAYS] += counts[STAT_SHADOW_RAYS] - before;
+    return passed;
+}
+
 void air_profile(EyeThread *eye, const MediaHere *here, const Ray *ray, double length,
                  MediaProfile *out)
 {
     double end = isfinite(length) ? length : eye->scene->atmosphere.media_end;
-    media_profile(here, ray, 0, end, scene_end(eye->trace.tracer, ray), &eye->rng, out);
+    media_profile(here, ray, 0, end, scene_end(eye->trace.tracer, ray), &eye->rng,
+                  &eye->trace.stats, out);
 }
 
 /* The light of one of the lamps, for all of them. */
@@ -210,11 +224,13 @@ void air_between(EyeThread *eye, const Ray *ray, double length, const AirEnds *e
     here.is_conserving = wanted != AIR_SEEN;
     if (!here.is_open)
         return;
+    eye->trace.stats.count[STAT_FOG_RAYS] += plan_has(eye->plan, FEATURE_FOG);
     if (plan_has(eye->plan, FEATURE_FOG))
         add_fogs(eye->scene, ray, length, out);
     out->front = out->through;
     if (plan_has(eye->plan, FEATURE_MEDIA) && here.list_count > 0)
         add_media(eye, &here, ray, length, ends, inside, wanted, out);
+    eye->trace.stats.count[STAT_RAINBOW_RAYS] += plan_has(eye->plan, FEATURE_RAINBOW);
     if (plan_has(eye->plan, FEATURE_RAINBOW))
         add_rainbows(eye, ray, length, out);
 }
@@ -230,5 +246,6 @@ Rgb air_clear(EyeThread *eye, const Ray *ray, double length, const Interiors *in
 {
     MediaHere here;
     media_here(eye->trace.tracer, inside, &here);
-    return media_transmittance(&here, ray, 0, length, scene_end(eye->trace.tracer, ray), &eye->rng);
+    return media_transmittance(&here, ray, 0, length, scene_end(eye->trace.tracer, ray), &eye->rng,
+                               &eye->trace.stats);
 }

@@ -36,6 +36,11 @@ void air_along(EyeThread *eye, const Ray *ray, double length, const Interiors *i
 void air_between(EyeThread *eye, const Ray *ray, double length, const AirEnds *ends,
                  const Interiors *inside, AirLight wanted, Veil *out);
 
+/* Return what of a light, as a place in media sees it, is not in shadow there:
+ * see trace_shadow. */
+Rgb air_shadow(EyeThread *eye, const EyeLight *light, V3 p, const LightSample *sample,
+               bool blocks_targets);
+
 /* Cut the first `length` scene units of a ray into cells. */
 void air_profile(EyeThread *eye, const MediaHere *here, const Ray *ray, double length,
                  MediaProfile *out);

@@ -122,6 +122,17 @@ static bool make_caches(const Tracer *tracer, IrradianceCaches *out)
     return out->seen && out->near;
 }
 
+/* Count rays from the camera on that seek places as what they are: not as those of the picture. */
+static void count_rays(Stats *stats)
+{
+    static const StatId kinds[] = {STAT_CAMERA_RAYS, STAT_REFLECTED_RAYS, STAT_REFRACTED_RAYS};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        stats->count[STAT_CACHE_RAYS] += stats->count[kinds[i]];
+        stats->count[kinds[i]] = 0;
+    }
+    stats->count[STAT_BLUR_RAYS] = stats->count[STAT_BAND_RAYS] = stats->count[STAT_SKY_RAYS] = 0;
+}
+
 Status irradiance_cache_fill(const Tracer *tracer, const EyeOptions *options,
                              const CacheFilling *filling, Diag *diag, Stats *stats,
                              IrradianceCaches *out)
@@ -142,8 +153,11 @@ Status irradiance_cache_fill(const Tracer *tracer, const EyeOptions *options,
         Round round = {.options = options, .eyes = eyes};
         status = do_rounds(&round, filling, out, diag);
     }
+    Stats counted = {0};
     for (int i = 0; i < made; i++)
-        eye_thread_free(eyes[i], stats);
+        eye_thread_free(eyes[i], &counted);
+    count_rays(&counted);
+    stats_add(stats, &counted);
     mem_free(eyes);
     if (status == OK)
         stats->count[STAT_CACHE_RECORDS] += irradiance_cache_count(out->seen);

@@ -47,6 +47,7 @@ static Rgb light_from(EyeThread *eye, const EyeLight *light, const SurfaceSample
                       bool has_highlights)
 {
     has_highlights = has_highlights && light->has_highlights;
+    eye->trace.stats.count[STAT_LIT]++;
     LightSample sample = light_at(light->light, light->light->location, s->at.p);
     Rgb sent;
     if (light->is_area && light->light->area.has_illumination) {
@@ -81,6 +82,15 @@ static bool is_directional(const SurfaceSample *s)
     return surface_has_brilliance(s);
 }
 
+static void note_gather(EyeThread *eye, const PhotonMap *map, int count)
+{
+    uint64_t *counts = eye->trace.stats.count;
+    counts[STAT_GATHERS]++;
+    counts[STAT_GATHERED] += (uint64_t)count;
+    if (map == eye->options.caustic)
+        counts[STAT_GATHERED_CAUSTIC] += (uint64_t)count;
+}
+
 /* The light of a map by finishes whose brilliance weighs where it comes from. */
 static Rgb brilliant_gather(EyeThread *eye, const PhotonMap *map, const GatherLimits *limits,
                             const SurfaceSample *s)
@@ -88,8 +98,7 @@ static Rgb brilliant_gather(EyeThread *eye, const PhotonMap *map, const GatherLi
     const GatheredPhoton *photons;
     GatherLimits own = gather_limits_at(limits, &s->at, s->ng);
     int count = photon_gather_list(map, s->at.p, s->ng, &own, eye->gather, &photons);
-    eye->trace.stats.count[STAT_GATHERS]++;
-    eye->trace.stats.count[STAT_GATHERED] += (uint64_t)count;
+    note_gather(eye, map, count);
     Rgb sum = RGB_BLACK;
     for (int i = 0; i < count; i++) {
         Rgb reflectance = surface_diffuse_from(s, photons[i].from);
@@ -105,7 +114,7 @@ static Rgb directional_caustic(EyeThread *eye, const SurfaceSample *s)
     GatherLimits limits = gather_limits_at(&options->caustic_limits, &s->at, s->ng);
     int count =
         photon_gather_list(options->caustic, s->at.p, s->ng, &limits, eye->gather, &photons);
-    eye->trace.stats.count[STAT_GATHERED] += (uint64_t)count;
+    note_gather(eye, options->caustic, count);
     Rgb sum = RGB_BLACK;
     for (int i = 0; i < count; i++) {
         double cosine = fmax(PHOTON_COSINE_MIN, v3_dot(photons[i].from, s->ng));
@@ -124,8 +133,7 @@ static Rgb side_gather(EyeThread *eye, const PhotonMap *map, const GatherLimits 
     Rgb irradiance;
     GatherLimits own = gather_limits_at(limits, at, n);
     int count = photon_gather(map, at->p, n, &own, eye->gather, &irradiance);
-    eye->trace.stats.count[STAT_GATHERS]++;
-    eye->trace.stats.count[STAT_GATHERED] += (uint64_t)count;
+    note_gather(eye, map, count);
     return rgb_mul(irradiance, part);
 }
 
@@ -151,7 +159,6 @@ Rgb caustic_light(EyeThread *eye, const SurfaceSample *s)
     Rgb behind = back_gather(eye, options->caustic, limits, s);
     if (!is_directional(s))
         return rgb_add(behind, diffuse_gather(eye, options->caustic, limits, s));
-    eye->trace.stats.count[STAT_GATHERS]++;
     return rgb_add(behind, directional_caustic(eye, s));
 }
 

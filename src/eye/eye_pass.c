@@ -222,6 +222,7 @@ static void blurred_sample(EyeThread *eye, double x, double y, EyeSample *out)
         V2 lens = warp_disk(sample_2d((uint32_t)i, lens_key));
         Ray ray = camera_lens_ray(&eye->camera, x + place.u - 0.5, y + place.v - 0.5, lens);
         trace_camera_ray(eye, &ray, out);
+        eye->trace.stats.count[STAT_BLUR_RAYS] += i > 0;
         blur_add(&blur, out);
         if (blur_is_done(&blur, eye->blur_limits))
             break;

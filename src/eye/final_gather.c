@@ -118,7 +118,9 @@ static Rgb irradiance_there(EyeThread *eye, const SurfaceSample *s, V3 n, double
     *radius = 0;
     if (options->global) {
         GatherLimits limits = gather_limits_at(&options->global_limits, &s->at, n);
-        photon_gather(options->global, s->at.p, n, &limits, eye->gather, &light);
+        int count = photon_gather(options->global, s->at.p, n, &limits, eye->gather, &light);
+        eye->trace.stats.count[STAT_GATHERS]++;
+        eye->trace.stats.count[STAT_GATHERED] += (uint64_t)count;
     }
     return light;
 }
@@ -247,6 +249,7 @@ static Rgb follow(EyeThread *eye, GatherRay *way, double *distance)
             sum = rgb_add(sum, air_light(eye, way, is_hit ? hit.t : INFINITY));
         if (!is_hit) {
             if (plan_has(eye->plan, FEATURE_SKY_LIGHT)) {
+                eye->trace.stats.count[STAT_SKY_RAYS]++;
                 Rgb sky = sky_light_from(eye->trace.tracer, way->ray.d);
                 sum = rgb_add(sum, rgb_mul(way->weight, sky));
             }

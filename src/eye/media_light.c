@@ -54,11 +54,7 @@ static Rgb look_at_light(const Scatter *s, double t)
     LightSample sample = light_at(light->light, light_point(eye, light, p), p);
     if (!(sample.distance > 0))
         return RGB_WHITE;
-    ShapePoint from = {.p = p, .ng = sample.to_light, .ns = sample.to_light};
-    Rgb arrived = RGB_WHITE;
-    if (light->has_shadow)
-        arrived = trace_shadow(&eye->trace, &from, sample.to_light, sample.distance, light->index,
-                               light->makes_volume);
+    Rgb arrived = air_shadow(eye, light, p, &sample, light->makes_volume);
     if (rgb_is_black(arrived))
         return arrived;
     return rgb_mul(

@@ -70,6 +70,7 @@ void media_photons(EyeThread *eye, const MediaHere *here, const MediaProfile *pr
                  add_photon, &sum);
     eye->trace.stats.count[STAT_GATHERS]++;
     eye->trace.stats.count[STAT_GATHERED] += sum.count;
+    eye->trace.stats.count[STAT_GATHERED_VOLUME] += sum.count;
     light[PART_CAUSTIC] = rgb_add(light[PART_CAUSTIC], rgb_of(sum.focused));
     light[PART_INDIRECT] = rgb_add(light[PART_INDIRECT], rgb_of(sum.scattered));
 }

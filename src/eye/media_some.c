@@ -13,11 +13,8 @@ static Rgb arriving_light(EyeThread *eye, const EyeLight *light, V3 point, V3 p)
     LightSample sample = light_at(source, point, p);
     if (!(sample.distance > 0))
         return center.color;
-    ShapePoint from = {.p = p, .ng = sample.to_light, .ns = sample.to_light};
     Rgb arrived = media_air_shadow(&eye->trace, p, sample.to_light, sample.distance, light->index);
-    if (light->has_shadow)
-        arrived = rgb_mul(arrived, trace_shadow(&eye->trace, &from, sample.to_light,
-                                                sample.distance, light->index, false));
+    arrived = rgb_mul(arrived, air_shadow(eye, light, p, &sample, false));
     return rgb_mul(center.color, arrived);
 }
 

@@ -41,6 +41,7 @@ static void add_met_lights(EyeThread *eye, const Path *path, double t, Radiance 
         if (!light->is_met ||
             !light_meet(light->light, eye->plan->light_radius, &path->ray, t, path->length, &met))
             continue;
+        eye->trace.stats.count[STAT_LIGHTS_MET]++;
         Rgb weight = is_caustic ? path->shine : path->weight;
         weight = rgb_mul(weight, interiors_fade(&path->inside, met.t));
         if (eye->has_air)
@@ -49,11 +50,12 @@ static void add_met_lights(EyeThread *eye, const Path *path, double t, Radiance 
     }
 }
 
-static void add_sky(const EyeThread *eye, const Path *path, Radiance *out)
+static void add_sky(EyeThread *eye, const Path *path, Radiance *out)
 {
     float behind;
     if (path->diffuse > 0 && plan_forbids(eye->plan, FEATURE_SKY_LIGHT))
         return;
+    eye->trace.stats.count[STAT_SKY_RAYS]++;
     Rgb sky = sky_light(eye, path->ray.d, path->is_mirrored, &behind);
     add_part(out, path_part(path), path->weight, sky);
     out->transmit = path->transmit * behind;

@@ -219,10 +219,13 @@ static void radiance(EyeThread *eye, Path *path, Radiance *out, EyeSample *first
     for (int surfaces = 0; surfaces < PATH_SURFACES_MAX; surfaces++) {
         Hit hit;
         bool is_met = trace_closest(&eye->trace, &path->ray, path->kind, &hit);
+        eye->trace.stats.count[STAT_BAND_RAYS] +=
+            path->kind == RAY_REFRACTED && path->inside.wavelength > 0;
         if (eye->has_air)
             add_air(eye, path, is_met ? &hit : NULL, out);
         if (!is_met) {
             float behind;
+            eye->trace.stats.count[STAT_SKY_RAYS]++;
             Rgb sky = sky_light(eye, path->ray.d, path->is_mirrored, &behind);
             add_part(out, PART_DIRECT, path->through, sky);
             out->transmit = path->transmit * behind;

@@ -36,6 +36,16 @@ static inline uint64_t emission_beam_number(const Emission *emission, const Beam
     return (uint64_t)(beam - emission->beams);
 }
 
+/* Return the counter that rays of a beam's photons are counted in, beside that of all. */
+static inline StatId emission_ray_counter(const Emission *emission, const Beam *beam)
+{
+    static const StatId of_lamps[MAP_COUNT] = {STAT_CAUSTIC_PHOTON_RAYS, STAT_GLOBAL_PHOTON_RAYS,
+                                               STAT_VOLUME_PHOTON_RAYS, STAT_VOLUME_PHOTON_RAYS};
+    if (beam->light)
+        return of_lamps[emission->rules.map];
+    return beam->emitter ? STAT_GLOW_PHOTON_RAYS : STAT_SKY_PHOTON_RAYS;
+}
+
 /* Draw ray `index` of a beam.  Returns false where the light does not shine. */
 bool emission_ray(TraceThread *thread, const Beam *beam, uint64_t index, BeamRay *out);
 

@@ -83,9 +83,11 @@ static void emit_chunk(void *ctx, size_t index, int thread)
     const LightBooks *books = &emission->books[chunk->beam->source];
     double thinned = (double)chunk->beam->budget / (double)chunk->beam->rays;
     float mean = (float)(books->power / (3 * (double)books->budget) * fmax(1, thinned));
+    uint64_t *counts = emission->threads[thread].stats.count, before = counts[STAT_PHOTON_RAYS];
     for (uint32_t i = 0; i < chunk->count; i++)
         emit_photon(emission, &emission->threads[thread], chunk, chunk->first + i,
                     mean * THIN_PART);
+    counts[emission_ray_counter(emission, chunk->beam)] += counts[STAT_PHOTON_RAYS] - before;
     if (thread == 0 && work->has_books && options->progress)
         options->progress(options->progress_ctx, (double)index / (double)work->count);
 }

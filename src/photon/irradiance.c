@@ -287,17 +287,20 @@ static Status make_threads(PlaceWork *work, int threads, int *made, Diag *diag)
     return OK;
 }
 
-static Status estimate_all(PlaceWork *work, int threads, Diag *diag)
+static Status estimate_all(PlaceWork *work, const IrradianceOptions *options, Diag *diag)
 {
+    int threads = options->threads;
     int made = 0;
     Status status = make_threads(work, threads, &made, diag);
     if (status == OK)
         status = work_for(threads, (work->count + CHUNK_PLACES - 1) / CHUNK_PLACES, estimate_chunk,
                           work);
     for (int i = 0; i < made; i++) {
+        stats_add(options->stats, &work->threads[i].stats);
         trace_thread_done(&work->threads[i]);
         gather_scratch_free(work->scratches[i]);
     }
+    options->stats->count[STAT_PLACES] += work->count;
     mem_free(work->threads);
     mem_free(work->scratches);
     return status;
@@ -351,8 +354,7 @@ Status irradiance_map_new(const Tracer *tracer, const PhotonMap *photons, Photon
     if (!(work.radius > 0))
         work.radius = INFINITY;
     IrradianceMap *map = mem_alloc(sizeof *map);
-    Status status =
-        map ? estimate_all(&work, options->threads, diag) : diag_no_memory(diag, "irradiance");
+    Status status = map ? estimate_all(&work, options, diag) : diag_no_memory(diag, "irradiance");
     if (status == OK)
         status = build(&work, options->threads, diag, map);
     mem_free(places);

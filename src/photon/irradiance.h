@@ -15,6 +15,7 @@ typedef struct IrradianceOptions {
     uint64_t seed;
     int threads;
     double radius; /* of searches in the photon map, scene units */
+    Stats *stats;  /* counters are added there */
 } IrradianceOptions;
 
 /* Estimate the irradiance at places.  Takes ownership of `places` (their powers and directions do

@@ -207,6 +207,7 @@ static Status make_irradiance(Emission *emission, Stats *stats, PhotonMaps *maps
     int most = gather_most(&tracer_scene(emission->tracer)->settings.photons);
     IrradianceOptions options = {.seed = emission->options->seed,
                                  .threads = emission->options->threads,
+                                 .stats = stats,
                                  .radius = photon_map_radius(maps->global, most)};
     Status status = emission_run_places(emission, IRRADIANCE_PART, &places);
     if (status == OK && places.count == 0)

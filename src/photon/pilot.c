@@ -205,6 +205,7 @@ static void pilot_beam(void *ctx, size_t index, int thread)
         side *= 2;
     if ((double)(side * side) * CELL_RAYS_FIRST * CELL_RAYS_FIRST <= pilot->rays)
         n = CELL_RAYS_FIRST;
+    uint64_t *counts = emission->threads[thread].stats.count, before = counts[STAT_PHOTON_RAYS];
     Grid grid = {side, mem_array((size_t)(side * side), sizeof(Cell))};
     double rest = pilot->rays - (double)(side * side) * n * n;
     pilot->is_short[index] =
@@ -212,6 +213,7 @@ static void pilot_beam(void *ctx, size_t index, int thread)
         !take_cells(beam, &grid);
     if (!beam->light && beam->cumulative)
         try_lines(emission, &emission->threads[thread], beam);
+    counts[emission_ray_counter(emission, beam)] += counts[STAT_PHOTON_RAYS] - before;
     mem_free(grid.cells);
 }
 

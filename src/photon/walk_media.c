@@ -71,12 +71,12 @@ bool media_leg(TraceThread *thread, const WalkRules *rules, const Ray *ray, doub
     leg_part(rules, ray, length, &begin, &end);
     if (!(end > begin)) { /* far off: what is lost there is all that matters */
         if (isfinite(length))
-            out->weight = media_transmittance(&here, ray, 0, length, 0, rng);
+            out->weight = media_transmittance(&here, ray, 0, length, 0, rng, &thread->stats);
         return true;
     }
     MediaProfile profile;
-    Rgb before = media_transmittance(&here, ray, 0, begin, 0, rng);
-    media_profile(&here, ray, begin, end, end, rng, &profile);
+    Rgb before = media_transmittance(&here, ray, 0, begin, 0, rng, &thread->stats);
+    media_profile(&here, ray, begin, end, end, rng, &thread->stats, &profile);
     if (may_stop && is_stored_in(&here))
         out->has_stop = media_place(&profile, weight, rng_double(rng), &out->stop, &out->power);
     if (may_scatter)
@@ -86,6 +86,7 @@ bool media_leg(TraceThread *thread, const WalkRules *rules, const Ray *ray, doub
     out->power = rgb_mul(out->power, before);
     out->weight = rgb_mul(out->weight, before);
     if (!out->is_scattered && isfinite(length))
-        out->weight = rgb_mul(out->weight, media_transmittance(&here, ray, end, length, end, rng));
+        out->weight = rgb_mul(
+            out->weight, media_transmittance(&here, ray, end, length, end, rng, &thread->stats));
     return true;
 }

@@ -238,9 +238,10 @@ static bool refine(const MediaHere *here, const Ray *ray, const MediaCare *care,
 }
 
 void media_profile(const MediaHere *here, const Ray *ray, double begin, double end, double near,
-                   Rng *rng, MediaProfile *out)
+                   Rng *rng, Stats *stats, MediaProfile *out)
 {
     if (here->is_homogeneous) {
+        stats->count[STAT_MEDIA_CELLS]++;
         out->count = 1;
         out->cells[0] = (MediaCell){.begin = begin, .end = end, .at = 0.5 * (begin + end)};
         media_at(here, ray->o, &out->cells[0].point);
@@ -255,6 +256,7 @@ void media_profile(const MediaHere *here, const Ray *ray, double begin, double e
             break;
         add_depths(out);
     }
+    stats->count[STAT_MEDIA_CELLS] += (uint64_t)out->count;
 }
 
 /* (1 - exp(-x t)) / x, also where x t is next to nothing. */
@@ -270,11 +272,11 @@ Rgb media_glow_length(Rgb x, double length)
 }
 
 Rgb media_transmittance(const MediaHere *here, const Ray *ray, double begin, double end,
-                        double near, Rng *rng)
+                        double near, Rng *rng, Stats *stats)
 {
     if (here->list_count == 0 || !(end > begin))
         return RGB_WHITE;
     MediaProfile profile;
-    media_profile(here, ray, begin, end, near, rng, &profile);
+    media_profile(here, ray, begin, end, near, rng, stats, &profile);
     return media_clear(profile.depth);
 }

@@ -80,9 +80,10 @@ typedef struct MediaProfile {
 /* Cut the stretch from t = begin to end into cells.
  *
  * near  where the part of the scene that has objects ends, t: an endless stretch is cut more
- *       coarsely from there on. */
+ *       coarsely from there on.
+ * stats the cells are counted there. */
 void media_profile(const MediaHere *here, const Ray *ray, double begin, double end, double near,
-                   Rng *rng, MediaProfile *out);
+                   Rng *rng, Stats *stats, MediaProfile *out);
 
 /* Return exp(-depth), channel by channel. */
 static inline Rgb media_clear(Rgb depth)
@@ -99,7 +100,7 @@ Rgb media_glow_length(Rgb x, double length);
 
 /* Return what passes the stretch. */
 Rgb media_transmittance(const MediaHere *here, const Ray *ray, double begin, double end,
-                        double near, Rng *rng);
+                        double near, Rng *rng, Stats *stats);
 
 /* Draw a place along a profile, where it scatters, in proportion to the light that gets there.
  *

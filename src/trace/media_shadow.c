@@ -153,8 +153,8 @@ static Rgb open_transmittance(TraceThread *thread, const MediaHere *here, const 
     for (int i = 0; i < open->count; i++) {
         double first = fmax(begin, open->begin[i]), last = fmin(end, open->end[i]);
         if (last > first)
-            light = rgb_mul(light,
-                            media_transmittance(here, ray, first, last, last, &thread->media_rng));
+            light = rgb_mul(light, media_transmittance(here, ray, first, last, last,
+                                                       &thread->media_rng, &thread->stats));
     }
     return light;
 }

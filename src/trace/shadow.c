@@ -328,6 +328,7 @@ Rgb trace_shadow_of(TraceThread *thread, const ShadowBundle *bundle, const Shape
     if (!(ray.tmax > 0))
         return RGB_WHITE;
     thread->stats.count[STAT_SHADOW_RAYS]++;
+    thread->stats.count[STAT_AREA_SHADOW_RAYS] += bundle != NULL;
     ShadowQuery query;
     query.thread = thread;
     query.tracer = thread->tracer;

@@ -9,12 +9,15 @@ for threads in 1 2 7; do
         --layers=direct,caustic,indirect,Z,N
     ok "$code" "renders on $threads threads"
     grep -o '"hash": "[0-9a-f]*"' "$T/$threads.json" >"$T/$threads.hash"
+    sed -n '/"counters"/,/"features"/p' "$T/$threads.json" >"$T/$threads.counts"
 done
 for threads in 2 7; do
     run "$PMS" compare "$T/1.exr" "$T/$threads.exr" --max-rmse=0
     ok "$code" "pixels of 1 and $threads threads are the same"
     cmp -s "$T/1.hash" "$T/$threads.hash"
     ok $? "photon maps of 1 and $threads threads are the same"
+    cmp -s "$T/1.counts" "$T/$threads.counts"
+    ok $? "and so is all that was counted"
 done
 [ "$(grep -cvF '"0000000000000000"' "$T/1.hash")" -eq 2 ]
 ok $? "both photon maps were made"

@@ -64,12 +64,27 @@ none all "--effect shadows=off" rays.shadow
 none all "--effect lights=off,caustics=off,gi=off" rays.shadow rays.photon
 none all "--effect reflection=off" rays.reflected
 none all "--effect refraction=off" rays.refracted
-none all "--effect caustics=off" photons.caustic
+none all "--effect caustics=off" photons.caustic rays.photon_caustic gathers.caustic_photons
 none all "--effect indirect=off" photons.global gather_rays.points
-none all "--effect volume_map=off" photons.volume
+none all "--effect volume_map=off" photons.volume rays.photon_volume gathers.volume_photons
 none all "--effect cache=off" irradiance_cache.records
 none all "--effect gather=off" gather_rays.points
 none all "--effect transparent_shadows=off" rays.shadow_filter_walks
+none all "--effect area_lights=off,dispersion=off,focal_blur=off" rays.shadow_area rays.dispersed rays.focal_blur
+none all "--effect media=off,fog=off,rainbow=off" media.cells fog.rays rainbow.rays
+none all "--effect emission_photons=off,sky_light=off" rays.photon_emission rays.photon_sky
+none clear "--integrator path --effect path_caustics=off" lights.met
+
+run "$PMS" "$T/all.pms" $size -o "$T/a.exr" --stats=-
+for counter in rays.shadow_area rays.shadow_media rays.dispersed rays.focal_blur media.cells fog.rays rainbow.rays \
+    rays.photon_caustic rays.photon_global rays.photon_volume rays.photon_emission rays.photon_sky rays.sky \
+    rays.cache gathers.caustic_photons gathers.volume_photons gather_rays.places lights.lit; do
+    grep -q "\"$counter\": [1-9]" "$T/out"
+    ok $? "$counter counts where nothing is off"
+done
+run "$PMS" "$T/clear.pms" $size --integrator path --light-radius 2 --aa 100 -o "$T/a.exr" --stats=-
+grep -q '"lights.met": [1-9]' "$T/out"
+ok $? "lights.met counts"
 
 # Without caustics targets cast the shadows of a scene without photons{}.
 same() {
