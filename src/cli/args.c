@@ -392,7 +392,9 @@ static Status read_layers(const Args *args, unsigned *out)
                   {"indirect", LAYER_INDIRECT},
                   {"Z", LAYER_Z},
                   {"N", LAYER_N},
-                  {"albedo", LAYER_ALBEDO}};
+                  {"albedo", LAYER_ALBEDO},
+                  {"error.noise", LAYER_ERROR_NOISE},
+                  {"error.bias", LAYER_ERROR_BIAS}};
     const char *text = args->value[OPT_LAYERS];
     while (text && *text) {
         size_t length = strcspn(text, ",");
@@ -402,8 +404,8 @@ static Status read_layers(const Args *args, unsigned *out)
                 bit = layers[i].bit;
         if (!bit)
             return diag_fail(args->diag, ERR_USAGE,
-                             "there is no layer '%.*s'; there are direct, caustic, indirect, Z, N "
-                             "and albedo",
+                             "there is no layer '%.*s'; there are direct, caustic, indirect, Z, "
+                             "N, albedo, error.noise and error.bias",
                              (int)length, text);
         *out |= bit;
         text += length + (text[length] == ',');
@@ -466,6 +468,7 @@ Status args_render_options(const Args *args, RenderOptions *out)
     TRY(args_int(args, OPT_SEED, 0, LONG_MAX, 0, &seed));
     TRY(args_int(args, OPT_QUALITY, 0, 11, 9, &quality));
     TRY(read_layers(args, &out->layers));
+    out->has_error_picture = args_has(args, OPT_ERROR_MAP);
     TRY(read_antialiasing(args, out));
     TRY(read_integrator(args, &out->plan));
     TRY(args_progressive(args, out));

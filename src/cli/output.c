@@ -71,6 +71,12 @@ static void header_fill(Header *header, const Args *args, const Scene *scene,
             header, "pms.passes", "%llu; gather radius caustic %.9g to %.9g, global %.9g to %.9g",
             (unsigned long long)result->passes, result->first_radii.caustic,
             result->last_radii.caustic, result->first_radii.global, result->last_radii.global);
+    if (result->error.is_known)
+        header_add(header, "pms.error",
+                   "95 %% of the pixels within %.3g %% of their luminance, with 90 %% confidence "
+                   "within %.3g %%; noise alone %.3g %%, bias alone %.3g %%",
+                   100 * result->error.whole, 100 * result->error.bound, 100 * result->error.noise,
+                   100 * result->error.bias);
     header_add(header, "pms.settings",
                "assumed_gamma %g, max_trace_level %d, adc_bailout %g, gather %d %d",
                scene->settings.assumed_gamma, scene->settings.max_trace_level,

@@ -96,6 +96,12 @@ static void say_passes_json(const Args *args, const RenderResult *result, double
             result->passes, result->new_passes);
     fprintf(stderr, ", \"seconds\": ");
     json_number(stderr, seconds);
+    if (result->error.is_known) {
+        fprintf(stderr, ", \"error\": ");
+        json_number(stderr, result->error.whole);
+        fprintf(stderr, ", \"error_bound\": ");
+        json_number(stderr, result->error.bound);
+    }
     fprintf(stderr, ", \"files\": [");
     for (int i = 0; i < args->output_count; i++) {
         fputs(i ? ", " : "", stderr);
@@ -116,7 +122,11 @@ void progress_say_passes(const Progress *progress, const Args *args, const Rende
     fprintf(stderr, "pms: %" PRIu64 " pass%s", result->passes, result->passes == 1 ? "" : "es");
     if (result->new_passes != result->passes)
         fprintf(stderr, ", %" PRIu64 " of them in this run,", result->new_passes);
-    fprintf(stderr, " in %.*f s, saved in", seconds < 10 ? 2 : 0, seconds);
+    fprintf(stderr, " in %.*f s", seconds < 10 ? 2 : 0, seconds);
+    if (result->error.is_known)
+        fprintf(stderr, ", error %.3g %% (with 90 %% confidence below %.3g %%)",
+                100 * result->error.whole, 100 * result->error.bound);
+    fputs(", saved in", stderr);
     for (int i = 0; i < args->output_count; i++)
         fprintf(stderr, "%s '%s'", i ? "," : "", args->outputs[i]);
     fputc('\n', stderr);

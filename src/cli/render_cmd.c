@@ -1,6 +1,7 @@
 /* pms render: a scene in, OpenEXR and PNG out.  SPDX-License-Identifier: Apache-2.0 */
 #include "cli/cli.h"
 #include "cli/progress.h"
+#include "cli/verdict.h"
 
 #include "base/file.h"
 
@@ -56,27 +57,33 @@ typedef struct Job {
     Progress progress;
 } Job;
 
+/* Write the pictures. */
+static Status write_pictures(const Job *job, RenderResult *result)
+{
+    const Args *args = job->args;
+    const char *errors = args->value[OPT_ERROR_MAP];
+    double start = clock_wall();
+    TRY(output_write(args, job->scene, result, args->outputs, args->output_count));
+    if (errors && result->error_picture.layer_count > 0)
+        TRY(picture_write(args->diag, errors, &result->error_picture));
+    result->stats.seconds[PHASE_WRITE] += clock_wall() - start;
+    return OK;
+}
+
 /* Write pictures and statistics. */
 static Status write_all(const Job *job, RenderResult *result)
 {
-    const Args *args = job->args;
-    double start = clock_wall();
     result->stats.seconds[PHASE_PARSE] = job->parse_seconds;
-    TRY(output_write(args, job->scene, result, args->outputs, args->output_count));
-    result->stats.seconds[PHASE_WRITE] += clock_wall() - start;
-    return write_stats(args, job->scene, result);
+    TRY(write_pictures(job, result));
+    return write_stats(job->args, job->scene, result);
 }
 
 /* Write the pictures of the passes so far. */
 static Status show_so_far(void *ctx, RenderResult *so_far)
 {
     Job *job = ctx;
-    const Args *args = job->args;
-    double start = clock_wall();
     progress_done(&job->progress);
-    TRY(output_write(args, job->scene, so_far, args->outputs, args->output_count));
-    so_far->stats.seconds[PHASE_WRITE] += clock_wall() - start;
-    return OK;
+    return write_pictures(job, so_far);
 }
 
 static Status tell_interrupted(const Job *job, const RenderResult *result)
@@ -113,6 +120,8 @@ static Status prepare(Job *job, RenderOptions *options)
     const Args *args = job->args;
     TRY(args_render_options(args, options));
     TRY(output_preflight(args, args->outputs, args->output_count));
+    if (options->has_error_picture)
+        TRY(picture_preflight(args, args->value[OPT_ERROR_MAP]));
     if (options->progressive.state_path)
         TRY(output_can_write(args, options->progressive.state_path));
     TRY(progress_init(&job->progress, args));

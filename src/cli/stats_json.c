@@ -108,12 +108,28 @@ static void print_work(FILE *file, const RenderResult *result)
     fputs("\n  ],\n", file);
 }
 
+static void print_error(FILE *file, const ErrorFigure *error)
+{
+    if (!error->is_known)
+        return;
+    fputs("  \"error\": {\"percentile\": 95, \"relative\": ", file);
+    json_number(file, error->whole);
+    fputs(", \"confidence\": 90, \"bound\": ", file);
+    json_number(file, error->bound);
+    fputs(", \"noise\": ", file);
+    json_number(file, error->noise);
+    fputs(", \"bias\": ", file);
+    json_number(file, error->bias);
+    fputs("},\n", file);
+}
+
 void stats_print_json(FILE *file, const Scene *scene, const RenderResult *result)
 {
     fputs("{\n  \"program\": \"pms " PMS_VERSION "\",\n  \"scene\": ", file);
     json_string(file, scene->path);
     fputs(",\n", file);
     print_passes(file, result);
+    print_error(file, &result->error);
     print_seconds(file, &result->stats);
     print_counters(file, &result->stats);
     print_work(file, result);

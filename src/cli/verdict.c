@@ -84,6 +84,7 @@ void metrics_print(FILE *file, const CompareResult *r)
     fprintf(file, "psnr     %.4g dB\n", r->psnr);
     fprintf(file, "ssim     %.6f\n", r->ssim);
     fprintf(file, "flip     %.6f\n", r->flip);
+    fprintf(file, "error95  %.6g\n", r->error95);
     fprintf(file, "max      %.6g\n", r->max_error);
     fprintf(file, "means    %.6g %.6g\n", r->mean_a, r->mean_b);
     fprintf(file, "light    %.6g %.6g\n", r->light_a, r->light_b);
@@ -96,13 +97,21 @@ void metrics_print_json(FILE *file, const CompareResult *r)
     const struct {
         const char *name;
         double value;
-    } items[] = {{"rmse", r->rmse},           {"mae", r->mae},
-                 {"relmse", r->rel_mse},      {"psnr", r->psnr},
-                 {"ssim", r->ssim},           {"flip", r->flip},
-                 {"max", r->max_error},       {"mean_a", r->mean_a},
-                 {"mean_b", r->mean_b},       {"light_a", r->light_a},
-                 {"light_b", r->light_b},     {"bad_a", (double)r->bad_a},
-                 {"bad_b", (double)r->bad_b}, {"relmse_epsilon", COMPARE_REL_EPSILON}};
+    } items[] = {{"rmse", r->rmse},
+                 {"mae", r->mae},
+                 {"relmse", r->rel_mse},
+                 {"psnr", r->psnr},
+                 {"ssim", r->ssim},
+                 {"flip", r->flip},
+                 {"error95", r->error95},
+                 {"max", r->max_error},
+                 {"mean_a", r->mean_a},
+                 {"mean_b", r->mean_b},
+                 {"light_a", r->light_a},
+                 {"light_b", r->light_b},
+                 {"bad_a", (double)r->bad_a},
+                 {"bad_b", (double)r->bad_b},
+                 {"relmse_epsilon", COMPARE_REL_EPSILON}};
     fprintf(file, "\"space\": \"%s\"", r->is_display ? "display" : "linear");
     for (size_t i = 0; i < sizeof items / sizeof *items; i++) {
         fprintf(file, ", \"%s\": ", items[i].name);
@@ -123,14 +132,26 @@ static void display_colours(const Image *image, float *out)
     }
 }
 
-Status picture_write(Diag *diag, const char *path, const Image *image)
+static Status check_extension(Diag *diag, const char *path)
 {
     const char *extension = path_extension(path);
-    if (strcasecmp(extension, "exr") == 0)
+    if (strcasecmp(extension, "exr") == 0 || strcasecmp(extension, "png") == 0)
+        return OK;
+    return diag_fail(diag, ERR_USAGE,
+                     "cannot tell the format of '%s': it should end in .exr or .png", path);
+}
+
+Status picture_preflight(const Args *args, const char *path)
+{
+    TRY(check_extension(args->diag, path));
+    return output_can_write(args, path);
+}
+
+Status picture_write(Diag *diag, const char *path, const Image *image)
+{
+    TRY(check_extension(diag, path));
+    if (strcasecmp(path_extension(path), "exr") == 0)
         return exr_write(diag, path, image, NULL, (ExrOptions){0});
-    if (strcasecmp(extension, "png") != 0)
-        return diag_fail(diag, ERR_USAGE,
-                         "cannot tell the format of '%s': it should end in .exr or .png", path);
     float *pixels = mem_array((size_t)image->width * (size_t)image->height, 3 * sizeof *pixels);
     if (!pixels)
         return diag_no_memory(diag, path);

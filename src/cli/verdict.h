@@ -25,6 +25,9 @@ Status thresholds_check(Diag *diag, const Thresholds *limits, const CompareResul
 void metrics_print(FILE *file, const CompareResult *result);
 void metrics_print_json(FILE *file, const CompareResult *result);
 
+/* Say early that a file could not be written, or has no known format. */
+Status picture_preflight(const Args *args, const char *path);
+
 /* Write an image as .exr, or as 8-bit .png: linear images are clipped and sRGB-encoded for it. */
 Status picture_write(Diag *diag, const char *path, const Image *image);
 

@@ -82,92 +82,102 @@ static bool is_directional(const SurfaceSample *s)
     return surface_has_brilliance(s);
 }
 
-static void note_gather(EyeThread *eye, const PhotonMap *map, int count)
+/* Count a gathering of so many photons. */
+static void count_gather(EyeThread *eye, const PhotonMap *map, int photons)
 {
     uint64_t *counts = eye->trace.stats.count;
     counts[STAT_GATHERS]++;
-    counts[STAT_GATHERED] += (uint64_t)count;
+    counts[STAT_GATHERED] += (uint64_t)photons;
     if (map == eye->options.caustic)
-        counts[STAT_GATHERED_CAUSTIC] += (uint64_t)count;
+        counts[STAT_GATHERED_CAUSTIC] += (uint64_t)photons;
 }
 
-/* The light of a map by finishes whose brilliance weighs where it comes from. */
-static Rgb brilliant_gather(EyeThread *eye, const PhotonMap *map, const GatherLimits *limits,
-                            const SurfaceSample *s)
+/* Add a photon, of which a surface sends on a share. */
+static void add_photon(LightEstimate *sum, const GatheredPhoton *photon, Rgb share)
+{
+    Rgb light = rgb_mul(photon->irradiance, share);
+    sum->light = rgb_add(sum->light, light);
+    sum->blur = rgb_mad(sum->blur, photon->excess, light);
+    sum->noise = rgb_add(sum->noise, rgb_mul(light, light)); /* squared until all are there */
+}
+
+static Rgb rgb_root(Rgb a)
+{
+    return rgb(sqrtf(a.r), sqrtf(a.g), sqrtf(a.b));
+}
+
+/* The light of a map by finishes for which it matters where light comes from.
+ *
+ * share  what the surface sends on of a photon. */
+static LightEstimate list_gather(EyeThread *eye, const PhotonMap *map, const GatherLimits *limits,
+                                 const SurfaceSample *s,
+                                 Rgb (*share)(EyeThread *eye, const SurfaceSample *s, V3 from))
 {
     const GatheredPhoton *photons;
+    LightEstimate sum = {.light = RGB_BLACK};
     GatherLimits own = gather_limits_at(limits, &s->at, s->ng);
     int count = photon_gather_list(map, s->at.p, s->ng, &own, eye->gather, &photons);
-    note_gather(eye, map, count);
-    Rgb sum = RGB_BLACK;
-    for (int i = 0; i < count; i++) {
-        Rgb reflectance = surface_diffuse_from(s, photons[i].from);
-        sum = rgb_add(sum, rgb_mul(photons[i].irradiance, reflectance));
-    }
+    count_gather(eye, map, count);
+    for (int i = 0; i < count; i++)
+        add_photon(&sum, &photons[i], share(eye, s, photons[i].from));
+    sum.noise = limits->has_error ? rgb_root(sum.noise) : RGB_BLACK;
     return sum;
 }
 
-static Rgb directional_caustic(EyeThread *eye, const SurfaceSample *s)
+static Rgb brilliant_share(EyeThread *eye, const SurfaceSample *s, V3 from)
 {
-    const GatheredPhoton *photons;
-    const EyeOptions *options = &eye->options;
-    GatherLimits limits = gather_limits_at(&options->caustic_limits, &s->at, s->ng);
-    int count =
-        photon_gather_list(options->caustic, s->at.p, s->ng, &limits, eye->gather, &photons);
-    note_gather(eye, options->caustic, count);
-    Rgb sum = RGB_BLACK;
-    for (int i = 0; i < count; i++) {
-        double cosine = fmax(PHOTON_COSINE_MIN, v3_dot(photons[i].from, s->ng));
-        Rgb sent = layers_direct(s, photons[i].from, plan_has(eye->plan, FEATURE_HIGHLIGHTS));
-        sum = rgb_mad(sum, (float)(1 / cosine), rgb_mul(photons[i].irradiance, sent));
-    }
-    return sum;
+    (void)eye;
+    return surface_diffuse_from(s, from);
 }
 
-/* Light of a map on the side of n, of which a surface sends on a part in all directions alike. */
-static Rgb side_gather(EyeThread *eye, const PhotonMap *map, const GatherLimits *limits,
-                       const ShapePoint *at, V3 n, Rgb part)
+static Rgb directional_share(EyeThread *eye, const SurfaceSample *s, V3 from)
+{
+    double cosine = fmax(PHOTON_COSINE_MIN, v3_dot(from, s->ng));
+    Rgb sent = layers_direct(s, from, plan_has(eye->plan, FEATURE_HIGHLIGHTS));
+    return rgb_scale(sent, (float)(1 / cosine));
+}
+
+/* Add light of a map on the side of n, of which a surface sends on a part in all directions
+ * alike. */
+static void add_side(EyeThread *eye, const PhotonMap *map, const GatherLimits *limits,
+                     const ShapePoint *at, V3 n, Rgb part, LightEstimate *sum)
 {
     if (rgb_is_black(part))
-        return RGB_BLACK;
-    Rgb irradiance;
+        return;
+    LightEstimate estimate;
     GatherLimits own = gather_limits_at(limits, at, n);
-    int count = photon_gather(map, at->p, n, &own, eye->gather, &irradiance);
-    note_gather(eye, map, count);
-    return rgb_mul(irradiance, part);
+    count_gather(eye, map, photon_gather_estimate(map, at->p, n, &own, eye->gather, &estimate));
+    light_estimate_add(sum, part, &estimate);
 }
 
-static Rgb diffuse_gather(EyeThread *eye, const PhotonMap *map, const GatherLimits *limits,
-                          const SurfaceSample *s)
+/* The light of a map that a surface sends to the viewer: what comes to its front, where it comes
+ * from matters if `share` is not NULL, and to its back. */
+static LightEstimate map_light(EyeThread *eye, const PhotonMap *map, const GatherLimits *limits,
+                               const SurfaceSample *s,
+                               Rgb (*share)(EyeThread *eye, const SurfaceSample *s, V3 from))
 {
-    return side_gather(eye, map, limits, &s->at, s->ng, surface_diffuse(s));
+    LightEstimate sum = {.light = RGB_BLACK};
+    if (share)
+        sum = list_gather(eye, map, limits, s, share);
+    else
+        add_side(eye, map, limits, &s->at, s->ng, surface_diffuse(s), &sum);
+    add_side(eye, map, limits, &s->at, v3_neg(s->ng), surface_diffuse_back(s), &sum);
+    return sum;
 }
 
-static Rgb back_gather(EyeThread *eye, const PhotonMap *map, const GatherLimits *limits,
-                       const SurfaceSample *s)
-{
-    return side_gather(eye, map, limits, &s->at, v3_neg(s->ng), surface_diffuse_back(s));
-}
-
-Rgb caustic_light(EyeThread *eye, const SurfaceSample *s)
+LightEstimate caustic_light(EyeThread *eye, const SurfaceSample *s)
 {
     const EyeOptions *options = &eye->options;
     if (!options->caustic || !s->surface->photons.is_collecting ||
         !photon_reach_has(options->caustic_reach, s->at.p))
-        return RGB_BLACK;
-    const GatherLimits *limits = &options->caustic_limits;
-    Rgb behind = back_gather(eye, options->caustic, limits, s);
-    if (!is_directional(s))
-        return rgb_add(behind, diffuse_gather(eye, options->caustic, limits, s));
-    return rgb_add(behind, directional_caustic(eye, s));
+        return (LightEstimate){.light = RGB_BLACK};
+    return map_light(eye, options->caustic, &options->caustic_limits, s,
+                     is_directional(s) ? directional_share : NULL);
 }
 
-Rgb mapped_light(EyeThread *eye, const SurfaceSample *s)
+LightEstimate mapped_light(EyeThread *eye, const SurfaceSample *s)
 {
     const EyeOptions *options = &eye->options;
-    const GatherLimits *limits = &options->global_limits;
-    Rgb behind = back_gather(eye, options->global, limits, s);
-    if (surface_has_brilliance(s))
-        return rgb_add(behind, brilliant_gather(eye, options->global, limits, s));
-    return rgb_add(behind, diffuse_gather(eye, options->global, limits, s));
+    return map_light(eye, options->global, &options->global_limits, s,
+                     surface_has_brilliance(s) ? brilliant_share : NULL);
 }

@@ -13,11 +13,15 @@
 #include "photon/volume.h"
 #include "trace/trace.h"
 
-/* Light by where it comes from; the parts add up to the beauty. */
+/* Light by where it comes from; the first PART_LIGHTS add up to the beauty.  What may be wrong with
+ * the light of photons goes the same way as that light. */
 typedef enum LightPart {
     PART_DIRECT,   /* ambient, emission, lights, highlights and the background */
     PART_CAUSTIC,  /* from the caustic map */
     PART_INDIRECT, /* gathered, or from the global map */
+    PART_LIGHTS,
+    PART_BLUR = PART_LIGHTS, /* see LightEstimate */
+    PART_NOISE,              /* see LightEstimate; added up as if of the same photons */
     PART_COUNT
 } LightPart;
 
@@ -27,7 +31,6 @@ typedef struct EyeOptions {
     uint64_t seed;
     bool is_progressive;   /* one of many passes, whose mean is the picture: what is spread (a
                               lens) is a single point for each sample */
-    uint32_t first_sample; /* samples of each pixel in the passes before */
     const PhotonMap *caustic, *global; /* NULL: none */
     const IrradianceMap *irradiance;   /* for final gathering; NULL: it finds glow alone */
     const struct IrradianceCache *cache; /* NULL: gather everywhere */
@@ -37,10 +40,11 @@ typedef struct EyeOptions {
                                            shadow: on surfaces, in media */
     const PhotonReach *caustic_reach;  /* for caustic_limits */
     GatherLimits caustic_limits, global_limits;
+    bool has_error; /* errors of the light of photons are estimated, as the limits should say */
 } EyeOptions;
 
 typedef struct EyeSample {
-    Rgb part[PART_COUNT]; /* radiance */
+    Rgb part[PART_COUNT]; /* radiance; blur and noise are black without limits.has_error */
     float alpha;          /* 1 - transmit of the ray */
     double depth;         /* distance to the first surface, scene units; infinite: none */
     V3 normal;            /* of the first surface, world, facing the camera; 0: none */

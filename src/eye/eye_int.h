@@ -89,14 +89,15 @@ Rgb layers_direct(const SurfaceSample *s, V3 to_light, bool has_highlights);
 Rgb direct_light(EyeThread *eye, const SurfaceSample *s, bool has_highlights);
 
 /* Return the light of the caustic map (of the global map) that a surface sends to the viewer. */
-Rgb caustic_light(EyeThread *eye, const SurfaceSample *s);
-Rgb mapped_light(EyeThread *eye, const SurfaceSample *s);
+LightEstimate caustic_light(EyeThread *eye, const SurfaceSample *s);
+LightEstimate mapped_light(EyeThread *eye, const SurfaceSample *s);
 
 /* Return the indirect light that a surface sends to the viewer, by final gathering.
  *
  * inside  the interiors before it.
  * weight  how much of the picture it can be, at most. */
-Rgb gathered_light(EyeThread *eye, const SurfaceSample *s, const Interiors *inside, float weight);
+LightEstimate gathered_light(EyeThread *eye, const SurfaceSample *s, const Interiors *inside,
+                             float weight);
 
 /* Return what a ray that met nothing sees.  transmit: how much of a picture behind the sky shows
  * through it; nothing in a mirror. */
@@ -104,6 +105,9 @@ Rgb sky_light(const EyeThread *eye, V3 direction, bool is_mirrored, float *trans
 
 /* Add light, of which `through` arrives, to a part. */
 void add_part(Radiance *out, LightPart part, Rgb through, Rgb light);
+
+/* The same of the light of a photon map, with its errors. */
+void add_estimate(Radiance *out, LightPart part, Rgb through, const LightEstimate *estimate);
 
 /* Bend the sum of the parts to sum^(1/exponent), each part in proportion. */
 void apply_exponent(Radiance *light, float exponent);

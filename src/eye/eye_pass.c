@@ -172,7 +172,8 @@ static void blur_add(Blur *blur, const EyeSample *ray)
     blur->count++;
     for (int i = 0; i < PART_COUNT; i++) {
         add_rgb(blur->part[i], ray->part[i]);
-        add_rgb(whole, ray->part[i]);
+        if (i < PART_LIGHTS)
+            add_rgb(whole, ray->part[i]);
     }
     for (int i = 0; i < 3; i++) {
         double delta = whole[i] - blur->mean[i];

@@ -98,7 +98,7 @@ static Rgb light_nearby(EyeThread *eye, const SurfaceSample *s, const Interiors 
     if (plan_has(eye->plan, FEATURE_LIGHTS))
         light = direct_light(eye, s, false);
     if (eye->options.caustic)
-        light = rgb_add(light, caustic_light(eye, s));
+        light = rgb_add(light, caustic_light(eye, s).light);
     light = rgb_add(light, rgb_mul(diffuse, irradiance_nearby(eye, s, s->ng, inside, depth)));
     if (rgb_is_black(back))
         return light;
@@ -226,7 +226,7 @@ static Rgb air_light(EyeThread *eye, GatherRay *way, double length)
     Veil veil;
     Rgb sum = RGB_BLACK;
     air_along(eye, &way->ray, length, &way->inside, AIR_GATHERED, &veil);
-    for (int i = 0; i < PART_COUNT; i++)
+    for (int i = 0; i < PART_LIGHTS; i++)
         sum = rgb_add(sum, veil.light[i]);
     sum = rgb_mul(way->weight, sum);
     way->weight = rgb_mul(way->weight, veil.through);
@@ -404,6 +404,22 @@ static void add_gradients(const Cells *cells, int row, int column, GatheredLight
     }
 }
 
+/* The standard error of the mean of the cells: each counts what one direction in it saw, which
+ * varies about as much as from it to the one beside it. */
+static float cells_noise(const Cells *cells)
+{
+    double sum = 0;
+    int count = cells->rows * cells->columns;
+    for (int i = 0; i < count; i++) {
+        bool is_last = (i + 1) % cells->columns == 0;
+        const float *a = cells->light[i],
+                    *b = cells->light[is_last ? i + 1 - cells->columns : i + 1];
+        double step = (double)rgb_luminance(rgb(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
+        sum += step * step / (2 * (1 + cells->more[i]));
+    }
+    return (float)(sqrt(sum) / count);
+}
+
 static void sum_cells(const Cells *cells, bool has_gradients, GatheredLight *out)
 {
     int count = cells->rows * cells->columns;
@@ -418,6 +434,7 @@ static void sum_cells(const Cells *cells, bool has_gradients, GatheredLight *out
     out->irradiance =
         rgb((float)(sum[0] / count), (float)(sum[1] / count), (float)(sum[2] / count));
     out->distance = count / inverse;
+    out->noise = cells_noise(cells);
     for (int i = 0; has_gradients && i < count; i++)
         add_gradients(cells, i / cells->columns, i % cells->columns, out);
 }

@@ -8,6 +8,7 @@
 /* Irradiance at a point and how it changes around it. */
 typedef struct GatheredLight {
     Rgb irradiance;
+    float noise;     /* standard error of its luminance */
     double distance; /* harmonic mean of those to what was seen, scene units; may be infinite */
     double nearest;  /* the least of them */
     float turn[3][3];  /* per channel: change with a turn of the normal, as a vector to be

@@ -46,8 +46,8 @@ static IrradianceRecord make_record(const EyeThread *eye, V3 p, V3 n, const Gath
     return record;
 }
 
-static Rgb gather_point(EyeThread *eye, const SurfaceSample *s, V3 n, const Interiors *inside,
-                        bool is_faint)
+static LightEstimate gather_point(EyeThread *eye, const SurfaceSample *s, V3 n,
+                                  const Interiors *inside, bool is_faint)
 {
     const RadiositySettings *settings = &eye->scene->settings.radiosity;
     int rays = is_faint ? settings->count / FAINT_PART : settings->count;
@@ -57,16 +57,16 @@ static Rgb gather_point(EyeThread *eye, const SurfaceSample *s, V3 n, const Inte
         IrradianceRecord record = make_record(eye, s->at.p, n, &light);
         keep_record(eye, &record);
     }
-    return light.irradiance;
+    return (LightEstimate){.light = light.irradiance, .noise = rgb_gray(light.noise)};
 }
 
 /* The irradiance on the side of n. */
-static Rgb irradiance_seen(EyeThread *eye, const SurfaceSample *s, V3 n, const Interiors *inside,
-                           bool is_faint)
+static LightEstimate irradiance_seen(EyeThread *eye, const SurfaceSample *s, V3 n,
+                                     const Interiors *inside, bool is_faint)
 {
     const RadiositySettings *settings = &eye->scene->settings.radiosity;
     if (eye->options.is_progressive)
-        return final_gather_few(eye, &s->at, n, inside);
+        return (LightEstimate){.light = final_gather_few(eye, &s->at, n, inside)};
     if (!eye->options.cache)
         return gather_point(eye, s, n, inside, is_faint);
     double error = settings->error_bound * CACHE_ERROR_UNIT;
@@ -86,7 +86,8 @@ static Rgb irradiance_seen(EyeThread *eye, const SurfaceSample *s, V3 n, const I
         eye->trace.stats.count[STAT_CACHE_MISSES] += read.count < needed;
     }
     if (read.count >= needed && read.weight > 0)
-        return cache_read_irradiance(&read);
+        return (LightEstimate){.light = cache_read_irradiance(&read),
+                               .noise = rgb_gray((float)cache_read_noise(&read))};
     return gather_point(eye, s, n, inside, is_faint);
 }
 
@@ -116,17 +117,25 @@ void nearby_light_keep(EyeThread *eye, V3 p, V3 n, const GatheredLight *light)
         eye->fresh->is_short = true;
 }
 
-Rgb gathered_light(EyeThread *eye, const SurfaceSample *s, const Interiors *inside, float weight)
+LightEstimate gathered_light(EyeThread *eye, const SurfaceSample *s, const Interiors *inside,
+                             float weight)
 {
     const RadiositySettings *settings = &eye->scene->settings.radiosity;
-    Rgb diffuse = surface_diffuse_even(s), back = surface_diffuse_back(s), light = RGB_BLACK;
+    Rgb diffuse = surface_diffuse_even(s), back = surface_diffuse_back(s);
+    LightEstimate sum = {.light = RGB_BLACK};
     bool is_faint = !eye->fresh && (double)weight < settings->adc_bailout;
     /* Without normals of a texture; towards the eye. */
     V3 n = v3_dot(s->at.ns, s->ng) < 0 ? v3_neg(s->at.ns) : s->at.ns;
-    if (!rgb_is_black(diffuse))
-        light = rgb_mul(diffuse, irradiance_seen(eye, s, n, inside, is_faint));
-    if (!rgb_is_black(back))
-        light = rgb_add(light, rgb_mul(back, irradiance_seen(eye, s, v3_neg(n), inside, is_faint)));
-    float gray = (float)settings->gray_threshold;
-    return rgb_scale(rgb_lerp(light, rgb_gray(rgb_grey(light)), gray), (float)settings->brightness);
+    if (!rgb_is_black(diffuse)) {
+        LightEstimate front = irradiance_seen(eye, s, n, inside, is_faint);
+        light_estimate_add(&sum, diffuse, &front);
+    }
+    if (!rgb_is_black(back)) {
+        LightEstimate behind = irradiance_seen(eye, s, v3_neg(n), inside, is_faint);
+        light_estimate_add(&sum, back, &behind);
+    }
+    float gray = (float)settings->gray_threshold, brightness = (float)settings->brightness;
+    sum.light = rgb_scale(rgb_lerp(sum.light, rgb_gray(rgb_grey(sum.light)), gray), brightness);
+    sum.noise = rgb_scale(sum.noise, brightness);
+    return sum;
 }

@@ -86,10 +86,17 @@ void cache_read_add(CacheRead *read, const IrradianceRecord *record)
     V3 axis = v3_cross(record->n, read->n);
     const GatheredLight *light = &record->light;
     const float channels[3] = {light->irradiance.r, light->irradiance.g, light->irradiance.b};
+    double found[3];
     for (int c = 0; c < 3; c++) {
         double e = (double)channels[c] + times(light->shift[c], to) + times(light->turn[c], axis);
-        read->sum[c] += weight * fmax(0, e);
+        found[c] = fmax(0, e);
+        read->sum[c] += weight * found[c];
     }
+    double luminance =
+        (double)rgb_luminance(rgb((float)found[0], (float)found[1], (float)found[2]));
+    read->squares += weight * luminance * luminance;
+    read->noise2 += weight * weight * (double)light->noise * (double)light->noise;
+    read->weight2 += weight * weight;
     read->weight += weight;
     read->count++;
 }
@@ -100,6 +107,17 @@ Rgb cache_read_irradiance(const CacheRead *read)
         return RGB_BLACK;
     return rgb((float)(read->sum[0] / read->weight), (float)(read->sum[1] / read->weight),
                (float)(read->sum[2] / read->weight));
+}
+
+double cache_read_noise(const CacheRead *read)
+{
+    if (!(read->weight > 0))
+        return 0;
+    double mean = (double)rgb_luminance(cache_read_irradiance(read)), all = read->weight;
+    double share = read->weight2 / (all * all), apart = read->squares / all - mean * mean;
+    /* The unbiased variance of one record, and of it what the mean has. */
+    double spread = share < 1 ? fmax(0, apart) / (1 - share) * share : 0;
+    return sqrt(fmax(spread, read->noise2 / (all * all)));
 }
 
 /* --- the cache -------------------------------------------------------------------------------- */

@@ -34,6 +34,8 @@ typedef struct CacheRead {
     double error; /* largest of a record that is used */
     int count;    /* records used */
     double weight, sum[3];
+    double squares, noise2, weight2; /* of luminances: weighted squares; squares of weighted errors;
+                                        squares of weights */
 } CacheRead;
 
 /* Add a record if it holds at the point. */
@@ -41,6 +43,10 @@ void cache_read_add(CacheRead *read, const IrradianceRecord *record);
 
 /* Return the irradiance read; black if count is 0. */
 Rgb cache_read_irradiance(const CacheRead *read);
+
+/* Return the standard error of its luminance: what the records' own errors leave, or how far they
+ * are apart if that is more. */
+double cache_read_noise(const CacheRead *read);
 
 typedef struct IrradianceCache IrradianceCache;
 

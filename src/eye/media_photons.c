@@ -18,6 +18,7 @@ typedef struct PhotonSum {
     const Ray *ray;
     double begin, end; /* t of the part that is looked at */
     double focused[3], scattered[3];
+    double blur[3], noise2[3]; /* see LightEstimate */
     uint64_t count;
 } PhotonSum;
 
@@ -46,10 +47,13 @@ static void add_photon(void *ctx, const VolumePhoton *photon)
     Rgb scattered = media_scattered(&sum->lobes, p, v3_dot(photon->from, sum->ray->d));
     Rgb depth = rgb_mad(cell->depth, (float)(way - cell->begin), cell->point.extinction);
     Rgb light = rgb_mul(rgb_mul(scattered, photon->power), media_clear(depth));
+    const double values[3] = {(double)light.r, (double)light.g, (double)light.b};
     double *to = photon->is_focused ? sum->focused : sum->scattered;
-    to[0] += (double)light.r;
-    to[1] += (double)light.g;
-    to[2] += (double)light.b;
+    for (int i = 0; i < 3; i++) {
+        to[i] += values[i];
+        sum->blur[i] += values[i] * (double)photon->excess;
+        sum->noise2[i] += values[i] * values[i];
+    }
     sum->count++;
 }
 
@@ -73,4 +77,9 @@ void media_photons(EyeThread *eye, const MediaHere *here, const MediaProfile *pr
     eye->trace.stats.count[STAT_GATHERED_VOLUME] += sum.count;
     light[PART_CAUSTIC] = rgb_add(light[PART_CAUSTIC], rgb_of(sum.focused));
     light[PART_INDIRECT] = rgb_add(light[PART_INDIRECT], rgb_of(sum.scattered));
+    if (!eye->options.has_error)
+        return;
+    const double noise[3] = {sqrt(sum.noise2[0]), sqrt(sum.noise2[1]), sqrt(sum.noise2[2])};
+    light[PART_BLUR] = rgb_add(light[PART_BLUR], rgb_of(sum.blur));
+    light[PART_NOISE] = rgb_add(light[PART_NOISE], rgb_of(noise));
 }

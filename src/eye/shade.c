@@ -35,6 +35,13 @@ void add_part(Radiance *out, LightPart part, Rgb through, Rgb light)
     out->part[part] = rgb_add(out->part[part], rgb_mul(through, light));
 }
 
+void add_estimate(Radiance *out, LightPart part, Rgb through, const LightEstimate *estimate)
+{
+    add_part(out, part, through, estimate->light);
+    add_part(out, PART_BLUR, through, estimate->blur);
+    add_part(out, PART_NOISE, through, estimate->noise);
+}
+
 static Rgb radiance_sum(const Radiance *r)
 {
     return rgb_add(rgb_add(r->part[PART_DIRECT], r->part[PART_CAUSTIC]), r->part[PART_INDIRECT]);
@@ -145,12 +152,12 @@ void describe_first(const Hit *hit, const SurfaceSample *s, EyeSample *first)
 
 static void add_indirect(EyeThread *eye, const Path *path, const SurfaceSample *s, Radiance *out)
 {
-    Rgb light = RGB_BLACK;
+    LightEstimate estimate = {.light = RGB_BLACK};
     if (plan_has(eye->plan, FEATURE_FINAL_GATHER))
-        light = gathered_light(eye, s, &path->inside, path->weight);
+        estimate = gathered_light(eye, s, &path->inside, path->weight);
     else if (eye->options.global)
-        light = mapped_light(eye, s);
-    add_part(out, PART_INDIRECT, path->through, light);
+        estimate = mapped_light(eye, s);
+    add_estimate(out, PART_INDIRECT, path->through, &estimate);
 }
 
 static void add_surface(EyeThread *eye, const Path *path, const SurfaceSample *s, Radiance *out)
@@ -160,8 +167,10 @@ static void add_surface(EyeThread *eye, const Path *path, const SurfaceSample *s
         if (plan_has(eye->plan, FEATURE_LIGHTS))
             direct = rgb_add(direct, direct_light(eye, s, true));
         add_part(out, PART_DIRECT, path->through, direct);
-        if (eye->options.caustic)
-            add_part(out, PART_CAUSTIC, path->through, caustic_light(eye, s));
+        if (eye->options.caustic) {
+            LightEstimate caustic = caustic_light(eye, s);
+            add_estimate(out, PART_CAUSTIC, path->through, &caustic);
+        }
     }
     if (plan_has(eye->plan, FEATURE_GLOBAL_MAP))
         add_indirect(eye, path, s, out);

@@ -6,11 +6,13 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "image/error_counts.h"
 #include "image/exr.h"
 #include "image/flip.h"
 #include "image/png_file.h"
 #include "image/ssim_int.h"
 #include "image/srgb.h"
+#include "math/rgb.h"
 
 #include <math.h>
 #include <string.h>
@@ -127,6 +129,48 @@ static void sum_errors(const float *a, const float *b, size_t pixels, CompareRes
     out->light_b = light_b * scale;
 }
 
+static Rgb light_at(const Colours *colours, size_t pixel)
+{
+    const float *p = colours->rgb + 3 * pixel;
+    bool is_display = colours->is_display;
+    return rgb((float)light_of(p[0], is_display), (float)light_of(p[1], is_display),
+               (float)light_of(p[2], is_display));
+}
+
+/* The mean luminance of the pixels that are numbers. */
+static double mean_light(const Colours *colours, size_t pixels)
+{
+    double sum = 0;
+    size_t used = 0;
+    for (size_t i = 0; i < pixels; i++) {
+        Rgb light = light_at(colours, i);
+        sum += rgb_is_finite(light) ? (double)rgb_luminance(light) : 0;
+        used += rgb_is_finite(light);
+    }
+    return used > 0 ? sum / (double)used : 0;
+}
+
+static Status find_error95(Diag *diag, const Colours *a, const Colours *reference, int width,
+                           int height, double *out)
+{
+    size_t pixels = (size_t)width * (size_t)height;
+    ErrorCounts *counts = error_counts_new();
+    if (!counts)
+        return diag_no_memory(diag, "a comparison");
+    double mean = mean_light(reference, pixels);
+    for (size_t i = 0; i < pixels; i++) {
+        Rgb one = light_at(a, i), other = light_at(reference, i);
+        double scale = error_scale((double)rgb_luminance(other), mean);
+        double error = fabs((double)rgb_luminance(rgb_sub(one, other)));
+        if (rgb_is_finite(one) && rgb_is_finite(other))
+            error_counts_add(counts, i % (size_t)width, i / (size_t)width,
+                             scale > 0 ? error / scale : error);
+    }
+    *out = error_counts_percentile(counts);
+    error_counts_free(counts);
+    return OK;
+}
+
 /* Return the display-encoded luma of each pixel; what cannot be compared is black in both. */
 static void luma_of(const Colours *colours, const Colours *other, size_t pixels, float *luma)
 {
@@ -209,6 +253,8 @@ Status image_compare(Diag *diag, const Image *a, const Image *reference, Compare
         status = find_ssim(diag, &ca, &cb, a->width, a->height, &out->ssim);
     }
     if (status == OK)
+        status = find_error95(diag, &ca, &cb, a->width, a->height, &out->error95);
+    if (status == OK)
         status = find_mean_flip(diag, &ca, &cb, a->width, a->height, &out->flip);
     mem_free(ca.rgb);
     mem_free(cb.rgb);
@@ -246,8 +292,7 @@ Status image_difference(Diag *diag, const Image *a, const Image *b, float gain, 
     return status;
 }
 
-/* A heat colour for 0 to 1, display values: even steps look alike. */
-static void heat(float x, float out[3])
+void image_heat(float x, float out[3])
 {
     static const float stops[][3] = {{0.001f, 0, 0.014f},
                                      {0.317f, 0.072f, 0.485f},
@@ -272,7 +317,7 @@ static Status flip_image(Diag *diag, const Colours *a, const Colours *reference,
     if (status == OK)
         status = find_flip(diag, a, reference, out->width, out->height, map);
     for (size_t i = 0; i < pixels && status == OK; i++)
-        heat(map[i], layer->pixels + 3 * i);
+        image_heat(map[i], layer->pixels + 3 * i);
     mem_free(map);
     return status;
 }

@@ -11,6 +11,8 @@ typedef struct CompareResult {
     double psnr;      /* dB, peak 1; infinite for equal images */
     double ssim;      /* mean structural similarity of luma, display-encoded; Wang et al. 2004 */
     double flip;      /* mean visible difference, 0 to 1: see image_flip */
+    double error95;   /* 95 % of the pixels differ by less than this part of the reference's
+                         luminance (linear light; in the dark see error_scale) */
     double max_error; /* largest difference of a channel */
     double mean_a, mean_b;
     double light_a, light_b; /* mean linear light, display values decoded */
@@ -39,6 +41,9 @@ Status image_difference(Diag *diag, const Image *a, const Image *b, float gain, 
  * Source: Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", 2020, and
  * "Visualizing Errors in Rendered High Dynamic Range Images", 2021. */
 Status image_flip(Diag *diag, const Image *a, const Image *reference, Image *out);
+
+/* Return in `out` the colour of heat for 0 to 1, display values: even steps look alike. */
+void image_heat(float x, float out[3]);
 
 /* Read an EXR or PNG by its content. */
 Status image_load(Diag *diag, const char *path, Image *out);

@@ -36,6 +36,12 @@ ImageLayer *image_add_layer(Image *image, const char *name, const char *channels
     return layer;
 }
 
+void image_drop_layer(Image *image)
+{
+    assert(image->layer_count > 0);
+    mem_free(image->layers[--image->layer_count].pixels);
+}
+
 ImageLayer *image_find_layer(const Image *image, const char *name)
 {
     for (int i = 0; i < image->layer_count; i++) {

@@ -29,6 +29,9 @@ void image_init(Image *image, int width, int height);
 /* Add a zeroed layer; NULL when memory is out.  Borrowed; adding may move earlier layers. */
 ImageLayer *image_add_layer(Image *image, const char *name, const char *channels);
 
+/* Remove the last layer. */
+void image_drop_layer(Image *image);
+
 /* Return the layer with this name, or NULL. */
 ImageLayer *image_find_layer(const Image *image, const char *name);
 

@@ -52,6 +52,9 @@ static inline Rgb rgb_hypot(Rgb a, Rgb b)
     return rgb(hypotf(a.r, b.r), hypotf(a.g, b.g), hypotf(a.b, b.b));
 }
 
+/* Return the luminance of linear light with the primaries of sRGB (ITU-R BT.709). */
+static inline float rgb_luminance(Rgb a) { return 0.2126f * a.r + 0.7152f * a.g + 0.0722f * a.b; }
+
 /* Return the language's grey value of a colour. */
 static inline float rgb_grey(Rgb a) { return 0.297f * a.r + 0.589f * a.g + 0.114f * a.b; }
 

@@ -36,6 +36,7 @@ void gather_scratch_free(GatherScratch *scratch)
         return;
     mem_free(scratch->found.distance2);
     mem_free(scratch->found.index);
+    mem_free(scratch->found.excess);
     mem_free(scratch->list);
     mem_free(scratch);
 }
@@ -79,6 +80,23 @@ static void weigh(FoundPhotons *found, GatherKernel kernel, float radius2)
     }
 }
 
+/* Find of each photon what an estimate on half the area, with the same kernel, would have less of
+ * it, as a share of its weight. */
+static void find_excess(FoundPhotons *found, GatherKernel kernel, float radius2)
+{
+    const float inverse = 1 / radius2, half2 = radius2 / 2;
+    if (kernel == KERNEL_FLAT) {
+        for (size_t i = 0; i < found->count; i++)
+            found->excess[i] = found->distance2[i] < half2 ? -1 : 1;
+        return;
+    }
+    for (size_t i = 0; i < found->count; i++) {
+        double x = (double)(found->distance2[i] * inverse), whole = gather_kernel(kernel, x);
+        double half = x < 0.5 ? 2 * gather_kernel(kernel, 2 * x) : 0;
+        found->excess[i] = whole > 0 ? (float)(1 - half / whole) : 0;
+    }
+}
+
 /* Find what an estimate is made of and replace squared distances by kernel weights over pi r^2.
  * Returns false when there is nothing. */
 static bool find_weights(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
@@ -89,7 +107,10 @@ static bool find_weights(const PhotonMap *map, V3 p, V3 n, const GatherLimits *l
     if (!(radius2 > 0) || scratch->found.count == 0)
         return false;
     bool is_softened = is_widened && limits->kernel == KERNEL_FLAT;
-    weigh(&scratch->found, is_softened ? KERNEL_EPANECHNIKOV : limits->kernel, radius2);
+    GatherKernel kernel = is_softened ? KERNEL_EPANECHNIKOV : limits->kernel;
+    if (limits->has_error)
+        find_excess(&scratch->found, kernel, radius2);
+    weigh(&scratch->found, kernel, radius2);
     return true;
 }
 
@@ -111,6 +132,25 @@ int photon_gather(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
     return (int)found->count;
 }
 
+int photon_gather_estimate(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
+                           GatherScratch *scratch, LightEstimate *out)
+{
+    FoundPhotons *found = &scratch->found;
+    *out = (LightEstimate){.light = RGB_BLACK};
+    int count = photon_gather(map, p, n, limits, scratch, &out->light);
+    if (!limits->has_error)
+        return count;
+    Rgb blur = RGB_BLACK, noise2 = RGB_BLACK;
+    for (size_t i = 0; i < (size_t)count; i++) {
+        Rgb light = rgb_scale(photon_map_power(map, found->index[i]), found->distance2[i]);
+        blur = rgb_mad(blur, found->excess[i], light);
+        noise2 = rgb_add(noise2, rgb_mul(light, light));
+    }
+    out->blur = blur;
+    out->noise = rgb(sqrtf(noise2.r), sqrtf(noise2.g), sqrtf(noise2.b));
+    return count;
+}
+
 int photon_gather_list(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
                        GatherScratch *scratch, const GatheredPhoton **out)
 {
@@ -130,7 +170,8 @@ int photon_gather_list(const PhotonMap *map, V3 p, V3 n, const GatherLimits *lim
         uint32_t index = found->index[i];
         scratch->list[i] =
             (GatheredPhoton){photon_map_from(map, index),
-                             rgb_scale(photon_map_power(map, index), found->distance2[i])};
+                             rgb_scale(photon_map_power(map, index), found->distance2[i]),
+                             limits->has_error ? found->excess[i] : 0};
     }
     *out = scratch->list;
     return (int)found->count;

@@ -39,6 +39,7 @@ typedef struct GatherLimits {
     double normal_cosine; /* photons whose surface normal is further off are ignored; -1: none
                              is.  Above 0 those that arrived on the other side never count. */
     GatherSide side;      /* when normals are looked at; see gather_side */
+    bool has_error;       /* errors are estimated too */
 } GatherLimits;
 
 /* Return which photons count for the light of that side of a surface that n points to. */
@@ -71,7 +72,29 @@ int gather_most(const PhotonSettings *photons);
 typedef struct GatheredPhoton {
     V3 from; /* unit, towards where it came from */
     Rgb irradiance;
+    float excess; /* of it, what an estimate on half the area would not have (negative: what it
+                     would have more), as a share; 0 without limits.has_error */
 } GatheredPhoton;
+
+/* An estimate, and with limits.has_error how wrong it may be; else blur and noise are black.
+ *
+ * Where light changes slowly, an estimate is off by a term that goes as the area it is taken over
+ * (the second derivative of the light times r^2).  So what half the area would give less is, in the
+ * mean over many estimates, half of the error. */
+typedef struct LightEstimate {
+    Rgb light; /* irradiance, or what a surface sends on of it */
+    Rgb blur;  /* above that on half the area */
+    Rgb noise; /* standard error: photons come as by chance, independent of each other */
+} LightEstimate;
+
+/* Add to an estimate what a surface sends on of another one. */
+static inline void light_estimate_add(LightEstimate *to, Rgb share, const LightEstimate *from)
+{
+    to->light = rgb_add(to->light, rgb_mul(share, from->light));
+    to->blur = rgb_add(to->blur, rgb_mul(share, from->blur));
+    if (!rgb_is_black(from->noise))
+        to->noise = rgb_hypot(to->noise, rgb_mul(share, from->noise));
+}
 
 /* Working memory of one thread; grows to what is gathered.  It remembers the last radius to
  * start the next search well; results do not depend on that. */
@@ -88,6 +111,10 @@ void gather_scratch_free(GatherScratch *scratch);
  * what fits).  Any thread.  O(k + log n). */
 int photon_gather(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
                   GatherScratch *scratch, Rgb *out);
+
+/* The same with its errors, as limits->has_error asks. */
+int photon_gather_estimate(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
+                           GatherScratch *scratch, LightEstimate *out);
 
 /* The same, but hands out the photons, for surfaces that are not merely diffuse.  The array is
  * the scratch's, valid until its next use. */

@@ -193,23 +193,34 @@ static void keep_nearest(FoundPhotons *found, float level, size_t keep)
     found->count = kept;
 }
 
+/* Make room for so many photons; returns false when memory is out. */
+static bool has_room(FoundPhotons *found, size_t capacity)
+{
+    if (found->capacity >= capacity)
+        return true;
+    float *distance2 = mem_resize(found->distance2, (capacity + LANES) * sizeof *distance2);
+    if (distance2)
+        found->distance2 = distance2;
+    uint32_t *index =
+        distance2 ? mem_resize(found->index, (capacity + LANES) * sizeof *index) : NULL;
+    if (index)
+        found->index = index;
+    float *excess = index ? mem_resize(found->excess, (capacity + LANES) * sizeof *excess) : NULL;
+    if (excess) {
+        found->excess = excess;
+        found->capacity = capacity;
+    }
+    return excess != NULL;
+}
+
 /* Make room for another block: cut down to the k nearest, or grow.  When memory is out, the
  * nearest half is what there is. */
 static void make_room(Search *search)
 {
     FoundPhotons *found = search->found;
     if (search->wanted == SIZE_MAX) {
-        size_t capacity = found->capacity * 2;
-        float *distance2 = mem_resize(found->distance2, (capacity + LANES) * sizeof *distance2);
-        if (distance2)
-            found->distance2 = distance2;
-        uint32_t *index =
-            distance2 ? mem_resize(found->index, (capacity + LANES) * sizeof *index) : NULL;
-        if (index) {
-            found->index = index;
-            found->capacity = capacity;
+        if (has_room(found, found->capacity * 2))
             return;
-        }
         search->wanted = found->capacity / 2;
     }
     search->radius2 = kth_smallest(found->distance2, found->count, search->wanted, search->radius2);
@@ -321,22 +332,6 @@ static bool search_nearest(Search *search, float start, float most)
     search->radius2 = kth_smallest(found->distance2, found->count, search->wanted, search->radius2);
     keep_nearest(found, search->radius2, search->wanted - 1);
     return true;
-}
-
-static bool has_room(FoundPhotons *found, size_t capacity)
-{
-    if (found->capacity >= capacity)
-        return true;
-    float *distance2 = mem_resize(found->distance2, (capacity + LANES) * sizeof *distance2);
-    if (distance2)
-        found->distance2 = distance2;
-    uint32_t *index =
-        distance2 ? mem_resize(found->index, (capacity + LANES) * sizeof *index) : NULL;
-    if (index) {
-        found->index = index;
-        found->capacity = capacity;
-    }
-    return index != NULL;
 }
 
 static Search make_search(const PhotonMap *map, V3 q, V3 n, const GatherLimits *limits,

@@ -10,6 +10,7 @@ enum { GATHER_GUESSES = 3 }; /* a pixel asks so many maps in turn */
 typedef struct FoundPhotons {
     float *distance2; /* as the gather shape measures it, scene units squared */
     uint32_t *index;
+    float *excess; /* see GatheredPhoton; with has_error only */
     size_t count, capacity;
 } FoundPhotons;
 

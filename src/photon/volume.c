@@ -305,8 +305,15 @@ static bool is_cut(const VolumeQuery *query, const VolumeBox *box)
     return near - far <= BOX_SLACK * (fabsf(near) + fabsf(far));
 }
 
+/* What a disk of half the area would give less, as a share, of a photon at a squared distance of x
+ * squared radii. */
+static float disk_excess(float x)
+{
+    return x < 0.5f ? 1 - 2 * (1 - 2 * x) / (1 - x) : 1;
+}
+
 static void visit_photon(const VolumeQuery *query, const PhotonBlock *block, int i, float along,
-                         float way, float kernel)
+                         float way, float most, float x)
 {
     const PhotonMap *map = query->index->map;
     size_t index = lane_index(map, block, i);
@@ -317,7 +324,8 @@ static void visit_photon(const VolumeQuery *query, const PhotonBlock *block, int
                            .way = (double)way,
                            .aside = {(double)away[0], (double)away[1], (double)away[2]},
                            .from = photon_map_from(map, index),
-                           .power = rgb_scale(photon_map_power(map, index), kernel),
+                           .power = rgb_scale(photon_map_power(map, index), most * (1 - x)),
+                           .excess = disk_excess(x),
                            .is_focused = block->flags[i] == PHOTON_FOCUSED};
     query->visit(query->ctx, &photon);
 }
@@ -343,8 +351,7 @@ static void visit_block(const VolumeQuery *query, uint32_t number)
     for (int i = 0; i < BLOCK_PHOTONS; i++) {
         if (!(away2[i] < radius2 && way[i] > 0 && left[i] > 0))
             continue;
-        float kernel = most * (1 - away2[i] * over2);
-        visit_photon(query, block, i, along[i], way[i], kernel);
+        visit_photon(query, block, i, along[i], way[i], most, away2[i] * over2);
     }
 }
 

@@ -41,6 +41,7 @@ typedef struct VolumePhoton {
     V3 from;      /* unit, to where it came from */
     Rgb power;    /* flux times length over volume, integrated over the ray: irradiance across the
                      photon's way times length */
+    float excess;    /* of its power, what it would give less were its disk half as large */
     bool is_focused; /* it came over mirrors and glass only */
 } VolumePhoton;
 

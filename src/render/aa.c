@@ -140,8 +140,9 @@ void aa_centers(const Aa *aa, FilmRect rect, AaSampler sampler, void *ctx, float
         }
 }
 
-static void uniform_pixel(const Aa *aa, int x, int y, int samples, bool is_centered,
-                          AaSampler sampler, void *ctx, float *out)
+/* Average `samples` of a pixel, from number `first` on; returns how many could be used. */
+static int uniform_pixel(const Aa *aa, int x, int y, uint32_t first, int samples, bool is_centered,
+                         AaSampler sampler, void *ctx, float *out)
 {
     uint32_t pixel = pixel_name(aa, x, y);
     Rng rng = rng_at(aa->seed, AA_UNIFORM_RNG, pixel);
@@ -149,14 +150,13 @@ static void uniform_pixel(const Aa *aa, int x, int y, int samples, bool is_cente
     Sum sum;
     sum_start(aa, &sum);
     for (int i = 0; i < samples; i++) {
-        uint32_t index = aa->first + (uint32_t)i;
+        uint32_t index = first + (uint32_t)i;
         V2 place = is_centered ? (V2){0.5, 0.5} : sample_2d(index, key);
         if (sampler(ctx, x + place.u, y + place.v, pixel, index, out))
             sum_add(aa, &sum, out);
     }
     sum_mean(aa, &sum, out);
-    for (int i = 0; sum.count == 0 && aa->has_gaps && i < aa->channels; i++)
-        out[i] = NAN;
+    return sum.count;
 }
 
 void aa_uniform(const Aa *aa, FilmRect rect, int samples, bool is_centered, AaSampler sampler,
@@ -164,7 +164,19 @@ void aa_uniform(const Aa *aa, FilmRect rect, int samples, bool is_centered, AaSa
 {
     for (int y = rect.y1; y < rect.y2; y++)
         for (int x = rect.x1; x < rect.x2; x++) {
-            uniform_pixel(aa, x, y, samples, is_centered, sampler, ctx, vectors);
+            uniform_pixel(aa, x, y, 0, samples, is_centered, sampler, ctx, vectors);
+            vectors += aa->channels;
+        }
+}
+
+void aa_series(const Aa *aa, FilmRect rect, PixelSamples *samples, AaSampler sampler, void *ctx,
+               float *vectors)
+{
+    for (int y = rect.y1; y < rect.y2; y++)
+        for (int x = rect.x1; x < rect.x2; x++) {
+            PixelSamples *of = &samples[pixel_name(aa, x, y)];
+            of->good = (uint16_t)uniform_pixel(aa, x, y, of->first, of->wanted, false, sampler, ctx,
+                                               vectors);
             vectors += aa->channels;
         }
 }

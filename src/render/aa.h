@@ -20,8 +20,6 @@ typedef struct Aa {
     double jitter; /* amount, 0: none */
     float power;   /* colours are compared as c^power */
     uint64_t seed;
-    uint32_t first; /* samples of a pixel taken before, of uniform ones */
-    bool has_gaps;  /* a pixel without a usable sample is NaN instead of black */
 } Aa;
 
 void aa_init(Aa *aa, const Film *film, const RenderOptions *options, const SceneSettings *settings);
@@ -51,6 +49,11 @@ void aa_centers(const Aa *aa, FilmRect rect, AaSampler sampler, void *ctx, float
  * sampler that spreads them itself. */
 void aa_uniform(const Aa *aa, FilmRect rect, int samples, bool is_centered, AaSampler sampler,
                 void *ctx, float *vectors);
+
+/* The same for one of many passes: of every pixel what film->samples asks for, where the usable
+ * ones are counted. */
+void aa_series(const Aa *aa, FilmRect rect, PixelSamples *samples, AaSampler sampler, void *ctx,
+               float *vectors);
 
 /* POV-Ray's method 1 on a block whose centres are in scratch->block: pixels that differ from
  * their left or upper neighbour get R x R samples more, and so do those neighbours.

@@ -1,7 +1,8 @@
 /* The state of a progressive render on disk.
  *
- * A header of fixed size, the settings as text, a checksum of both, the sums, and a checksum of
- * everything; in the byte order of the machine.  SPDX-License-Identifier: Apache-2.0 */
+ * A header of fixed size, the settings as text, a checksum of both, the sums of the two halves, and
+ * a checksum of everything; in the byte order of the machine.  SPDX-License-Identifier: Apache-2.0
+ */
 #include "render/checkpoint.h"
 
 #include "base/file.h"
@@ -16,18 +17,18 @@
 
 static const char MAGIC[8] = "PMSSTATE";
 
-enum { BYTE_ORDER_MARK = 0x01020304, FORMAT_VERSION = 2 };
+enum { BYTE_ORDER_MARK = 0x01020304, FORMAT_VERSION = 3 };
 
 typedef struct Header {
     char magic[8];
     uint32_t byte_order, version;
-    uint64_t settings_size; /* bytes */
-    uint64_t value_count;
+    uint64_t settings_size;            /* bytes */
+    uint64_t value_count, pixel_count; /* of a half */
     uint64_t passes;
     double caustic_radius, global_radius, volume_radius; /* of the first pass */
 } Header;
 
-static_assert(sizeof(Header) == 64, "the header has no holes");
+static_assert(sizeof(Header) == 72, "the header has no holes");
 
 /* --- settings ------------------------------------------------------------------------------- */
 
@@ -157,13 +158,22 @@ static void put_hash(Stream *out)
     put(out, &hash, sizeof hash);
 }
 
-static void put_state(Stream *out, const char *settings, const PassRadii *first, const FilmSum *sum)
+static void put_sum(Stream *out, const FilmSum *sum)
+{
+    put(out, sum->values, sum->count * sizeof *sum->values);
+    put(out, sum->taken, sum->pixels * sizeof *sum->taken);
+    put(out, sum->good, sum->pixels * sizeof *sum->good);
+}
+
+static void put_state(Stream *out, const char *settings, const PassRadii *first,
+                      const FilmSum halves[2])
 {
     Header header = {.byte_order = BYTE_ORDER_MARK,
                      .version = FORMAT_VERSION,
                      .settings_size = strlen(settings),
-                     .value_count = sum->count,
-                     .passes = sum->passes,
+                     .value_count = halves->count,
+                     .pixel_count = halves->pixels,
+                     .passes = halves[0].passes + halves[1].passes,
                      .caustic_radius = first->caustic,
                      .global_radius = first->global,
                      .volume_radius = first->volume};
@@ -171,19 +181,20 @@ static void put_state(Stream *out, const char *settings, const PassRadii *first,
     put(out, &header, sizeof header);
     put(out, settings, header.settings_size);
     put_hash(out);
-    put(out, sum->values, sum->count * sizeof *sum->values);
+    for (int i = 0; i < 2; i++)
+        put_sum(out, &halves[i]);
     put_hash(out);
 }
 
 Status checkpoint_write(Diag *diag, const char *path, const char *settings, const PassRadii *first,
-                        const FilmSum *sum)
+                        const FilmSum halves[2])
 {
     OutFile out;
     TRY(out_begin(diag, path, &out));
     Stream stream = {.file = fopen(out.temp_path, "wb")};
     stream.is_good = stream.file != NULL;
     if (stream.file) {
-        put_state(&stream, settings, first, sum);
+        put_state(&stream, settings, first, halves);
         int error = stream.is_good ? 0 : errno;
         stream.is_good = fclose(stream.file) == 0 && stream.is_good;
         errno = error ? error : errno;
@@ -256,11 +267,12 @@ static Status read_head(Reader *r)
 {
     const Header *header = &r->header;
     TRY(read_header(r));
-    if (header->settings_size >= sizeof r->settings || header->value_count > SIZE_MAX / 16 ||
-        header->passes > UINT32_MAX)
+    if (header->settings_size >= sizeof r->settings || header->value_count > SIZE_MAX / 64 ||
+        header->pixel_count > header->value_count || header->passes > UINT32_MAX)
         return damaged(r);
-    size_t wanted = sizeof *header + header->settings_size + 2 * sizeof(uint64_t) +
-                    header->value_count * sizeof(double);
+    size_t wanted =
+        sizeof *header + header->settings_size + 2 * sizeof(uint64_t) +
+        2 * (header->value_count * sizeof(double) + 2 * header->pixel_count * sizeof(uint32_t));
     get(&r->in, r->settings, header->settings_size);
     if (!get_hash(&r->in))
         return r->size < wanted ? cut_short(r, wanted) : damaged(r);
@@ -269,27 +281,37 @@ static Status read_head(Reader *r)
     return r->size > wanted ? damaged(r) : OK;
 }
 
-static Status check_settings(const Reader *r, const char *settings, const FilmSum *sum)
+static Status check_settings(const Reader *r, const char *settings, const FilmSum halves[2])
 {
     char difference[2 * CHECKPOINT_SETTINGS_MAX];
     if (strcmp(settings, r->settings) == 0)
-        return r->header.value_count == sum->count ? OK : damaged(r);
+        return r->header.value_count == halves->count && r->header.pixel_count == halves->pixels
+                   ? OK
+                   : damaged(r);
     checkpoint_difference(r->settings, settings, difference, sizeof difference);
     return diag_fail(r->diag, ERR_USAGE,
                      "'%s' is of another picture: %s; without --resume it is begun anew", r->path,
                      difference);
 }
 
-static Status read_state(Reader *r, const char *settings, FilmSum *sum)
+static void get_sum(Stream *in, FilmSum *sum)
+{
+    get(in, sum->values, sum->count * sizeof *sum->values);
+    get(in, sum->taken, sum->pixels * sizeof *sum->taken);
+    get(in, sum->good, sum->pixels * sizeof *sum->good);
+}
+
+static Status read_state(Reader *r, const char *settings, FilmSum halves[2])
 {
     TRY(read_head(r));
-    TRY(check_settings(r, settings, sum));
-    get(&r->in, sum->values, sum->count * sizeof *sum->values);
+    TRY(check_settings(r, settings, halves));
+    for (int i = 0; i < 2; i++)
+        get_sum(&r->in, &halves[i]);
     return get_hash(&r->in) ? OK : damaged(r);
 }
 
 Status checkpoint_read(Diag *diag, const char *path, const char *settings, PassRadii *first,
-                       FilmSum *sum, bool *is_there)
+                       FilmSum halves[2], bool *is_there)
 {
     int fd;
     struct stat info;
@@ -303,11 +325,13 @@ Status checkpoint_read(Diag *diag, const char *path, const char *settings, PassR
         close(fd);
         return diag_no_memory(diag, path);
     }
-    Status status = read_state(&r, settings, sum);
+    Status status = read_state(&r, settings, halves);
     fclose(r.in.file);
     if (status != OK)
         return status;
     *first = (PassRadii){r.header.caustic_radius, r.header.global_radius, r.header.volume_radius};
-    sum->passes = r.header.passes;
+    /* The first half is a pass ahead when their number is odd. */
+    halves[0].passes = (r.header.passes + 1) / 2;
+    halves[1].passes = r.header.passes / 2;
     return OK;
 }

@@ -19,13 +19,13 @@ void checkpoint_difference(const char *there, const char *here, char *out, size_
 
 /* Write the state.  On ERR_FILE the old one is as it was. */
 Status checkpoint_write(Diag *diag, const char *path, const char *settings, const PassRadii *first,
-                        const FilmSum *sum);
+                        const FilmSum halves[2]);
 
-/* Read a state that was written with the same settings, for a sum made for the same film.  Without
+/* Read a state that was written with the same settings, for sums made for the same film.  Without
  * a file at `path`, *is_there is false and all else as it was.  ERR_FILE, after a message, for a
  * file that cannot be read, is cut short or damaged; ERR_USAGE for one of other settings: the
- * message says which.  The sum is then of no use. */
+ * message says which.  The sums are then of no use. */
 Status checkpoint_read(Diag *diag, const char *path, const char *settings, PassRadii *first,
-                       FilmSum *sum, bool *is_there);
+                       FilmSum halves[2], bool *is_there);
 
 #endif

@@ -8,6 +8,9 @@ typedef struct LayerKind {
     const char *name, *channels;
 } LayerKind;
 
+/* Those that are found at the end, from the picture as a whole, not by samples. */
+enum { LAYERS_FOUND = LAYER_ERROR_NOISE | LAYER_ERROR_BIAS };
+
 /* In the order of a vector's channels, which film_vector repeats. */
 static const LayerKind LAYER_KINDS[] = {
     {0, "", "RGBA"},
@@ -17,6 +20,8 @@ static const LayerKind LAYER_KINDS[] = {
     {LAYER_Z, "Z", "Z"},
     {LAYER_N, "N", "XYZ"},
     {LAYER_ALBEDO, "albedo", "RGB"},
+    {LAYER_ERROR_NOISE, "error.noise", "Y"},
+    {LAYER_ERROR_BIAS, "error.bias", "Y"},
 };
 enum { LAYER_KIND_COUNT = sizeof LAYER_KINDS / sizeof LAYER_KINDS[0] };
 
@@ -28,7 +33,27 @@ const char *film_layer_name(LayerBit layer)
     return "";
 }
 
-Status film_init(Film *film, const RenderOptions *options, Diag *diag)
+static bool add_layers(Film *film, unsigned use)
+{
+    for (int i = 0; i < LAYER_KIND_COUNT; i++) {
+        const LayerKind *kind = &LAYER_KINDS[i];
+        bool is_found = kind->bit & LAYERS_FOUND;
+        if ((kind->bit && !(film->layers & kind->bit)) || (is_found && !(use & FILM_SHOWN)))
+            continue;
+        if (!image_add_layer(&film->image, kind->name, kind->channels))
+            return false;
+        if (is_found)
+            continue;
+        if (kind->bit == LAYER_Z)
+            film->z_channel = film->channels;
+        film->channels += (int)strlen(kind->channels);
+    }
+    film->has_clues = use & FILM_CLUES;
+    film->channels += film->has_clues ? CLUE_CHANNELS : 0;
+    return !film->has_clues || image_add_layer(&film->image, "clues", "NBCS");
+}
+
+Status film_init(Film *film, const RenderOptions *options, unsigned use, Diag *diag)
 {
     *film = (Film){.width = options->width,
                    .height = options->height,
@@ -36,24 +61,29 @@ Status film_init(Film *film, const RenderOptions *options, Diag *diag)
                    .layers = options->layers,
                    .has_alpha = options->has_alpha};
     image_init(&film->image, film->width, film->height);
-    for (int i = 0; i < LAYER_KIND_COUNT; i++) {
-        const LayerKind *kind = &LAYER_KINDS[i];
-        if (kind->bit && !(options->layers & kind->bit))
-            continue;
-        if (!image_add_layer(&film->image, kind->name, kind->channels)) {
-            image_done(&film->image);
-            return diag_no_memory(diag, "the image");
-        }
-        if (kind->bit == LAYER_Z)
-            film->z_channel = film->channels;
-        film->channels += (int)strlen(kind->channels);
-    }
-    return OK;
+    if (add_layers(film, use))
+        return OK;
+    film_done(film);
+    return diag_no_memory(diag, "the image");
 }
 
 void film_done(Film *film)
 {
     image_done(&film->image);
+}
+
+Status film_show_errors(Film *film, Diag *diag)
+{
+    image_drop_layer(&film->image);
+    film->channels -= CLUE_CHANNELS;
+    film->has_clues = false;
+    for (int i = 0; i < LAYER_KIND_COUNT; i++) {
+        const LayerKind *kind = &LAYER_KINDS[i];
+        if (kind->bit & LAYERS_FOUND & film->layers &&
+            !image_add_layer(&film->image, kind->name, kind->channels))
+            return diag_no_memory(diag, "the image");
+    }
+    return OK;
 }
 
 static float *put_rgb(float *out, Rgb c)
@@ -70,7 +100,7 @@ void film_vector(const Film *film, const EyeSample *s, float *out)
         rgb_add(rgb_add(s->part[PART_DIRECT], s->part[PART_CAUSTIC]), s->part[PART_INDIRECT]);
     float *at = put_rgb(out, beauty);
     *at++ = film->has_alpha ? s->alpha : 1;
-    for (int i = 0; i < PART_COUNT; i++)
+    for (int i = 0; i < PART_LIGHTS; i++)
         if (film->layers & (unsigned)LAYER_DIRECT << i)
             at = put_rgb(at, s->part[i]);
     if (film->layers & LAYER_Z)
@@ -78,7 +108,13 @@ void film_vector(const Film *film, const EyeSample *s, float *out)
     if (film->layers & LAYER_N)
         at = put_rgb(at, rgb((float)s->normal.x, (float)s->normal.y, (float)s->normal.z));
     if (film->layers & LAYER_ALBEDO)
-        put_rgb(at, s->albedo);
+        at = put_rgb(at, s->albedo);
+    if (!film->has_clues)
+        return;
+    at[CLUE_NOISE] = rgb_luminance(s->part[PART_NOISE]);
+    at[CLUE_BLUR] = rgb_luminance(s->part[PART_BLUR]);
+    at[CLUE_CAUSTIC] = rgb_luminance(s->part[PART_CAUSTIC]);
+    at[CLUE_SQUARE] = rgb_luminance(beauty) * rgb_luminance(beauty);
 }
 
 static size_t row_offset(const Film *film, int x, int y)
@@ -133,23 +169,26 @@ FilmRect film_block(const Film *film, int side, size_t index)
 
 /* --- working values to linear light --------------------------------------------------------- */
 
-static float srgb_decode(float v)
-{
-    return v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
-}
-
 /* Scenes of before 3.7 without assumed_gamma work on display values. */
-static float linear_value(const SceneSettings *settings, float v)
+double film_linear(const SceneSettings *settings, double v)
 {
     if (settings->is_gamma_off)
-        return srgb_decode(v);
-    return v > 0 ? powf(v, (float)settings->assumed_gamma) : 0;
+        return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+    return v > 0 ? pow(v, settings->assumed_gamma) : 0;
 }
 
-static void scale_light_layers(Film *film, size_t pixel, const float factor[3])
+double film_slope(const SceneSettings *settings, double value)
 {
-    for (int i = 1; i < film->image.layer_count; i++) {
-        ImageLayer *layer = &film->image.layers[i];
+    double gamma = settings->assumed_gamma;
+    if (settings->is_gamma_off)
+        return value <= 0.04045 ? 1 / 12.92 : 2.4 / 1.055 * pow((value + 0.055) / 1.055, 1.4);
+    return gamma == 1 ? 1 : value > 0 ? gamma * pow(value, gamma - 1) : 0;
+}
+
+static void scale_light_layers(Image *picture, size_t pixel, const float factor[3])
+{
+    for (int i = 1; i < picture->layer_count; i++) {
+        ImageLayer *layer = &picture->layers[i];
         if (strcmp(layer->name, "direct") != 0 && strcmp(layer->name, "caustic") != 0 &&
             strcmp(layer->name, "indirect") != 0)
             continue;
@@ -158,20 +197,20 @@ static void scale_light_layers(Film *film, size_t pixel, const float factor[3])
     }
 }
 
-void film_linearize(Film *film, const SceneSettings *settings)
+void film_linearize(Image *picture, const SceneSettings *settings)
 {
     if (!settings->is_gamma_off && settings->assumed_gamma == 1)
         return;
-    float *beauty = film->image.layers[0].pixels;
-    size_t pixels = (size_t)film->width * (size_t)film->height;
+    float *beauty = picture->layers[0].pixels;
+    size_t pixels = (size_t)picture->width * (size_t)picture->height;
     for (size_t i = 0; i < pixels; i++) {
         float factor[3];
         for (size_t c = 0; c < 3; c++) {
             float *v = &beauty[i * 4 + c];
-            float linear = linear_value(settings, *v);
+            float linear = (float)film_linear(settings, (double)*v);
             factor[c] = *v != 0 ? linear / *v : 0;
             *v = linear;
         }
-        scale_light_layers(film, i, factor);
+        scale_light_layers(picture, i, factor);
     }
 }

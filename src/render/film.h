@@ -1,19 +1,35 @@
 /* The film: samples as rows of floats, and the image they end in.
  *
- * A sample of a pixel is a vector of channels: R G B A, then those of the layers asked for.
- * Antialiasing averages whole vectors, so light layers add up to the beauty however a pixel
- * was sampled.  SPDX-License-Identifier: Apache-2.0 */
+ * A sample of a pixel is a vector of channels: R G B A, then those of the layers asked for, then
+ * what errors are estimated from.  Antialiasing averages whole vectors, so light layers add up to
+ * the beauty however a pixel was sampled.  SPDX-License-Identifier: Apache-2.0 */
 #ifndef PMS_RENDER_FILM_H
 #define PMS_RENDER_FILM_H
 
 #include "eye/eye.h"
 #include "render/render.h"
 
-/* RGBA, three light layers, Z, N, albedo. */
-enum { FILM_CHANNELS_MAX = 4 + 3 * 3 + 1 + 3 + 3 };
+/* What errors are estimated from: luminances. */
+typedef enum ClueChannel {
+    CLUE_NOISE,   /* standard error of the light of photons */
+    CLUE_BLUR,    /* see LightEstimate */
+    CLUE_CAUSTIC, /* light of the caustic map */
+    CLUE_SQUARE,  /* of the whole light */
+    CLUE_CHANNELS
+} ClueChannel;
+
+/* RGBA, three light layers, Z, N, albedo, clues. */
+enum { FILM_CHANNELS_MAX = 4 + 3 * 3 + 1 + 3 + 3 + CLUE_CHANNELS };
 
 /* Pixel blocks of the language's antialiasing methods. */
 enum { FILM_BLOCK = 32 };
+
+/* What a pixel gets of one pass of many. */
+typedef struct PixelSamples {
+    uint32_t first; /* number of the first of these samples */
+    uint16_t wanted;
+    uint16_t good; /* of them that could be used, when the pass is done */
+} PixelSamples;
 
 typedef struct Film {
     int width, height;
@@ -21,6 +37,8 @@ typedef struct Film {
     int z_channel;   /* of depth: the nearest counts, not the average; -1: none */
     unsigned layers; /* LayerBits */
     bool has_alpha;
+    bool has_clues;        /* the last layer of the image is what errors are estimated from */
+    PixelSamples *samples; /* of all pixels, of one of many passes; NULL: as the options say */
     Image image;
 } Film;
 
@@ -32,9 +50,22 @@ typedef struct FilmRect {
 /* Return the name of a layer. */
 const char *film_layer_name(LayerBit layer);
 
-/* Make an image with the layers asked for.  Free with film_done. */
-Status film_init(Film *film, const RenderOptions *options, Diag *diag);
+/* What a film is for. */
+typedef enum FilmUse {
+    FILM_SAMPLES = 1, /* its layers are means of samples */
+    FILM_CLUES = 2,   /* what errors are estimated from is kept too */
+    FILM_SHOWN = 4    /* it has the layers that are found from others at the end */
+} FilmUse;
+
+/* Make an image with the layers asked for.  Free with film_done.
+ *
+ * use  of FilmUse, as bits. */
+Status film_init(Film *film, const RenderOptions *options, unsigned use, Diag *diag);
 void film_done(Film *film);
+
+/* Turn the image of samples and clues into one that is shown: instead of the clues it has the
+ * layers that are found at the end. */
+Status film_show_errors(Film *film, Diag *diag);
 
 /* Turn a sample into a vector. */
 void film_vector(const Film *film, const EyeSample *sample, float *out);
@@ -47,8 +78,14 @@ void film_fetch(const Film *film, FilmRect rect, float *vectors);
 size_t film_block_count(const Film *film, int side);
 FilmRect film_block(const Film *film, int side, size_t index);
 
-/* Turn working values into linear light, as the scene's assumed_gamma says; layers keep their
- * share of each pixel's beauty. */
-void film_linearize(Film *film, const SceneSettings *settings);
+/* Turn the working values of a picture into linear light, as the scene's assumed_gamma says; layers
+ * keep their share of each pixel's beauty. */
+void film_linearize(Image *picture, const SceneSettings *settings);
+
+/* Return the linear light of a working value. */
+double film_linear(const SceneSettings *settings, double value);
+
+/* Return by how much linear light changes with a working value. */
+double film_slope(const SceneSettings *settings, double value);
 
 #endif

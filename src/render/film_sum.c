@@ -5,25 +5,28 @@
 
 #include <string.h>
 
-static size_t layer_size(const Film *film, int layer)
+static bool is_depth(const ImageLayer *layer)
 {
-    size_t pixels = (size_t)film->width * (size_t)film->height;
-    return pixels * (size_t)film->image.layers[layer].channel_count;
+    return strcmp(layer->name, "Z") == 0;
 }
 
 Status film_sum_init(FilmSum *sum, const Film *film, Diag *diag)
 {
-    *sum = (FilmSum){.values = NULL};
+    *sum = (FilmSum){.pixels = (size_t)film->width * (size_t)film->height};
     for (int i = 0; i < film->image.layer_count; i++) {
-        size_t size = layer_size(film, i);
-        if (strcmp(film->image.layers[i].name, "Z") == 0) {
+        const ImageLayer *layer = &film->image.layers[i];
+        size_t size = sum->pixels * (size_t)layer->channel_count;
+        if (is_depth(layer)) {
             sum->z_begin = sum->count;
             sum->z_end = sum->count + size;
         }
         sum->count += size;
     }
+    sum->clues = sum->count - (film->has_clues ? sum->pixels * CLUE_CHANNELS : 0);
     sum->values = mem_array(sum->count, sizeof *sum->values);
-    if (!sum->values)
+    sum->taken = mem_array(sum->pixels, sizeof *sum->taken);
+    sum->good = mem_array(sum->pixels, sizeof *sum->good);
+    if (!sum->values || !sum->taken || !sum->good)
         return diag_no_memory(diag, "the sums of passes");
     for (size_t i = sum->z_begin; i < sum->z_end; i++)
         sum->values[i] = INFINITY;
@@ -33,50 +36,87 @@ Status film_sum_init(FilmSum *sum, const Film *film, Diag *diag)
 void film_sum_done(FilmSum *sum)
 {
     mem_free(sum->values);
+    mem_free(sum->taken);
+    mem_free(sum->good);
     *sum = (FilmSum){.values = NULL};
 }
 
-static void add_values(FilmSum *sum, size_t begin, const float *values, size_t count)
+void film_sum_follow(const FilmSum *sum, Film *film)
 {
-    double *to = sum->values + begin, share = sum->passes ? 1 / (double)sum->passes : 0;
-    for (size_t i = 0; i < count; i++)
-        to[i] += isnan(values[i]) ? to[i] * share : (double)values[i];
+    for (size_t i = 0; i < sum->pixels; i++)
+        film->samples[i].first = sum->taken[i];
 }
 
-/* fmin leaves out what is NaN. */
-static void add_depths(FilmSum *sum, const float *values, size_t count)
+static void add_layer(double *to, const ImageLayer *layer, const Film *film, size_t pixels)
 {
-    double *to = sum->values + sum->z_begin;
+    size_t channels = (size_t)layer->channel_count;
+    const float *from = layer->pixels;
+    for (size_t i = 0; i < pixels; i++, to += channels, from += channels) {
+        double samples = film->samples[i].good;
+        for (size_t c = 0; c < channels && samples > 0; c++)
+            to[c] += samples * (double)from[c];
+    }
+}
+
+static void add_depths(double *to, const float *from, size_t count)
+{
     for (size_t i = 0; i < count; i++)
-        to[i] = fmin(to[i], (double)values[i]);
+        to[i] = fmin(to[i], (double)from[i]);
 }
 
 void film_sum_add(FilmSum *sum, const Film *film)
 {
-    size_t begin = 0;
+    double *to = sum->values;
     for (int i = 0; i < film->image.layer_count; i++) {
-        const float *values = film->image.layers[i].pixels;
-        size_t size = layer_size(film, i);
-        if (begin == sum->z_begin && sum->z_end > begin)
-            add_depths(sum, values, size);
+        const ImageLayer *layer = &film->image.layers[i];
+        if (is_depth(layer))
+            add_depths(to, layer->pixels, sum->pixels);
         else
-            add_values(sum, begin, values, size);
-        begin += size;
+            add_layer(to, layer, film, sum->pixels);
+        to += sum->pixels * (size_t)layer->channel_count;
+    }
+    for (size_t i = 0; i < sum->pixels; i++) {
+        sum->taken[i] += film->samples[i].wanted;
+        sum->good[i] += film->samples[i].good;
     }
     sum->passes++;
 }
 
-void film_sum_mean(const FilmSum *sum, Film *film)
+static void mean_depths(const FilmSum *sums, int n, size_t begin, float *to)
+{
+    for (size_t i = 0; i < sums->pixels; i++) {
+        double nearest = sums[0].values[begin + i];
+        for (int k = 1; k < n; k++)
+            nearest = fmin(nearest, sums[k].values[begin + i]);
+        to[i] = (float)nearest;
+    }
+}
+
+static void mean_layer(const FilmSum *sums, int n, size_t begin, size_t channels, float *to)
+{
+    for (size_t i = 0; i < sums->pixels; i++) {
+        double samples = 0;
+        for (int k = 0; k < n; k++)
+            samples += sums[k].good[i];
+        for (size_t c = 0; c < channels; c++) {
+            double value = 0;
+            for (int k = 0; k < n; k++)
+                value += sums[k].values[begin + i * channels + c];
+            to[i * channels + c] = samples > 0 ? (float)(value / samples) : 0;
+        }
+    }
+}
+
+void film_sum_mean(const FilmSum *sums, int n, Image *picture)
 {
     size_t begin = 0;
-    double mean = sum->passes ? 1 / (double)sum->passes : 0;
-    for (int i = 0; i < film->image.layer_count; i++) {
-        float *values = film->image.layers[i].pixels;
-        size_t size = layer_size(film, i);
-        bool is_depth = begin == sum->z_begin && sum->z_end > begin;
-        const double *from = sum->values + begin;
-        for (size_t k = 0; k < size; k++)
-            values[k] = (float)(is_depth ? from[k] : from[k] * mean);
-        begin += size;
+    for (int i = 0; i < picture->layer_count && begin < sums->clues; i++) {
+        ImageLayer *layer = &picture->layers[i];
+        size_t channels = (size_t)layer->channel_count;
+        if (is_depth(layer))
+            mean_depths(sums, n, begin, layer->pixels);
+        else
+            mean_layer(sums, n, begin, channels, layer->pixels);
+        begin += sums->pixels * channels;
     }
 }

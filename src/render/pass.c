@@ -20,6 +20,7 @@ typedef struct Pass {
     const PassOptions *options;
     Diag *diag;
     Stats *stats;
+    bool has_error; /* what errors are estimated from is asked for */
     PhotonMaps maps;
     PhotonReach caustic_reach;
     VolumeIndex *volume;
@@ -62,7 +63,8 @@ static GatherLimits gather_limits(const Pass *pass, double radius, double far_ra
                           .far_radius = far_radius,
                           .shape = settings->pms.gather_shape,
                           .kernel = settings->pms.kernel,
-                          .normal_cosine = GATHER_NORMAL_COSINE};
+                          .normal_cosine = GATHER_NORMAL_COSINE,
+                          .has_error = pass->has_error};
 }
 
 /* The same for one pass of many: everything within the radius of the pass.
@@ -167,7 +169,7 @@ static Status fill_film(Pass *pass, Film *film)
                       .has_alpha = options->has_alpha,
                       .seed = options->seed,
                       .is_progressive = series != NULL,
-                      .first_sample = series ? series->first_sample : 0,
+                      .has_error = film->has_clues,
                       .caustic = pass->maps.caustic,
                       .global = pass->maps.global,
                       .irradiance = pass->maps.irradiance,
@@ -192,7 +194,11 @@ static uint64_t map_hash(const PhotonMap *map)
 Status pass_render(const Tracer *tracer, const PassOptions *options, Diag *diag, Stats *stats,
                    Film *film, PassResult *out)
 {
-    Pass pass = {.tracer = tracer, .options = options, .diag = diag, .stats = stats};
+    Pass pass = {.tracer = tracer,
+                 .options = options,
+                 .diag = diag,
+                 .stats = stats,
+                 .has_error = film->has_clues};
     *out = (PassResult){0};
     Status status = make_maps(&pass);
     if (status == OK)

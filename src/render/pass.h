@@ -8,7 +8,6 @@
 /* What makes a pass one of many: photons are gathered within a radius that the pass is given, all
  * of them, so that the estimate is that of a fixed kernel and the mean over passes is right. */
 typedef struct PassSeries {
-    uint32_t first_sample; /* samples of each pixel taken in the passes before */
     double shrink;         /* gather radius over that of the first pass */
     bool is_repeat;        /* a pass has been run before: what there is to warn of was said */
     PassRadii *first;      /* gather radii of the first pass; those that are 0 are found, from the

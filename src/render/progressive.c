@@ -8,6 +8,9 @@
  * that find them, so the same holds for them.  No statistics are kept at the points that are
  * looked at, so passes need not look at the same ones: each samples pixels and lenses anew.
  *
+ * Every other pass belongs to one of two halves of the picture that have nothing random in common;
+ * how they differ tells how wrong the picture is (error_map.h).
+ *
  * Everything random is a function of seed and pass, and sums are kept in double precision between
  * runs: a picture is the same bits however its passes are spread over runs and threads.
  * SPDX-License-Identifier: Apache-2.0 */
@@ -15,12 +18,14 @@
 
 #include "base/rng.h"
 #include "base/work.h"
+#include "base/mem.h"
 #include "render/checkpoint.h"
+#include "render/error_map.h"
 #include "render/film_sum.h"
 #include "render/pass.h"
 
-/* Names the seeds of the photons of passes. */
-enum { SERIES_RNG = 0x736572 };
+/* Names the seeds of the photons of passes, and of the samples of halves. */
+enum { SERIES_RNG = 0x736572, HALF_RNG = 0x68616c };
 
 /* a, see above. */
 #define SERIES_ALPHA (2.0 / 3)
@@ -39,8 +44,10 @@ typedef struct Series {
     RenderOptions options; /* as asked, but for how pixels are sampled and progress goes */
     Diag *diag;
     RenderResult *out;
-    Film film;
-    FilmSum sum;
+    Film film; /* of a pass */
+    FilmSum halves[2];
+    Film shown; /* the picture, of layers that were asked for */
+    ErrorMap errors;
     PassRadii first;                /* gather radii of the first pass */
     uint64_t passes_asked;          /* stop after so many */
     double started, passes_started; /* seconds of clock_wall */
@@ -70,6 +77,11 @@ double progressive_shrink(uint64_t pass)
     return sqrt(shrink2);
 }
 
+static uint64_t passes_done(const Series *s)
+{
+    return s->halves[0].passes + s->halves[1].passes;
+}
+
 static PassRadii scaled(PassRadii radii, double factor)
 {
     return (PassRadii){radii.caustic * factor, radii.global * factor, radii.volume * factor};
@@ -84,7 +96,7 @@ static double seconds_left(const Series *s, double pass_fraction)
     double now = clock_wall(), done = (double)s->out->new_passes + pass_fraction;
     double left = INFINITY;
     if (progressive->passes && done > 0.01) {
-        double to_do = (double)(s->passes_asked - s->sum.passes) - pass_fraction;
+        double to_do = (double)(s->passes_asked - passes_done(s)) - pass_fraction;
         left = (now - s->passes_started) / done * to_do;
     }
     if (progressive->seconds > 0)
@@ -101,7 +113,7 @@ static void report_pass(void *ctx, const RenderProgress *of_pass)
     double fraction = of_pass->fraction;
     if (pass_needs_photons(tracer_plan(s->tracer)))
         fraction = fraction / 2 + (is_eye ? 0.5 : 0);
-    progress.pass = s->sum.passes + 1;
+    progress.pass = passes_done(s) + 1;
     progress.passes = s->asked->progressive.passes;
     progress.seconds_left = seconds_left(s, fraction);
     s->asked->progress(s->asked->progress_ctx, &progress);
@@ -112,16 +124,22 @@ static void report_pass(void *ctx, const RenderProgress *of_pass)
 static Status keep_state(Series *s)
 {
     const char *path = s->asked->progressive.state_path;
-    return path ? checkpoint_write(s->diag, path, s->settings, &s->first, &s->sum) : OK;
+    return path ? checkpoint_write(s->diag, path, s->settings, &s->first, s->halves) : OK;
 }
 
 /* Make the picture of the passes done. */
-static void make_picture(Series *s)
+static Status make_picture(Series *s)
 {
-    film_sum_mean(&s->sum, &s->film);
-    film_linearize(&s->film, &tracer_scene(s->tracer)->settings);
-    s->out->passes = s->sum.passes;
+    const SceneSettings *settings = &tracer_scene(s->tracer)->settings;
+    Image *picture = &s->shown.image;
+    film_sum_mean(s->halves, 2, picture);
+    film_linearize(picture, settings);
+    s->out->passes = passes_done(s);
     s->out->first_radii = s->first;
+    if (s->halves[1].passes == 0)
+        return OK;
+    error_map_of_halves(s->halves, &s->film, settings, &s->errors);
+    return error_map_show(&s->errors, picture, s->asked, s->diag, s->out);
 }
 
 static Status show(Series *s)
@@ -130,21 +148,21 @@ static Status show(Series *s)
     double begun = clock_wall();
     TRY(keep_state(s));
     if (progressive->show) {
-        make_picture(s);
-        s->out->image = s->film.image;
+        TRY(make_picture(s));
+        s->out->image = s->shown.image;
         Status status = progressive->show(progressive->show_ctx, s->out);
         s->out->image = (Image){0};
         TRY(status);
     }
     s->last_shown = clock_wall();
     s->show_cost = s->last_shown - begun;
-    s->last_shown_pass = s->sum.passes;
+    s->last_shown_pass = passes_done(s);
     return OK;
 }
 
 static bool is_due(const Series *s)
 {
-    bool is_power_of_2 = (s->sum.passes & (s->sum.passes - 1)) == 0;
+    bool is_power_of_2 = (passes_done(s) & (passes_done(s) - 1)) == 0;
     double pause = fmax(SHOW_SECONDS, SHOW_COSTS * s->show_cost);
     return is_power_of_2 || clock_wall() - s->last_shown >= pause;
 }
@@ -160,7 +178,7 @@ static Status show_if_due(Series *s)
         return status;
     diag_warn(s->diag, WARN_FILE, SPAN_NONE,
               "the picture after pass %llu was not kept; rendering goes on",
-              (unsigned long long)s->sum.passes);
+              (unsigned long long)passes_done(s));
     s->last_shown = clock_wall();
     return OK;
 }
@@ -170,7 +188,7 @@ static Status show_if_due(Series *s)
 static bool is_over(const Series *s)
 {
     const ProgressiveOptions *progressive = &s->asked->progressive;
-    if (work_ending || s->sum.passes >= s->passes_asked)
+    if (work_ending || passes_done(s) >= s->passes_asked)
         return true;
     if (!(progressive->seconds > 0) || s->out->new_passes == 0)
         return false;
@@ -178,18 +196,28 @@ static bool is_over(const Series *s)
     return now + a_pass - s->started > progressive->seconds;
 }
 
+/* The seed of what the eye draws at random in a half: its samples are those of a series of their
+ * own. */
+static uint64_t half_seed(const Series *s, uint64_t half)
+{
+    Rng rng = rng_at(s->asked->seed, HALF_RNG, half);
+    return rng_u64(&rng);
+}
+
 static Status run_pass(Series *s)
 {
-    uint64_t number = s->sum.passes;
+    uint64_t number = passes_done(s);
+    FilmSum *half = &s->halves[number % 2];
     PassResult result;
-    Rng seed = rng_at(s->options.seed, SERIES_RNG, number);
-    PassSeries series = {.first_sample = (uint32_t)number * (uint32_t)s->options.samples,
-                         .shrink = progressive_shrink(number + 1),
+    Rng seed = rng_at(s->asked->seed, SERIES_RNG, number);
+    PassSeries series = {.shrink = progressive_shrink(number + 1),
                          .is_repeat = s->out->new_passes > 0,
                          .first = &s->first};
     PassOptions pass = {&s->options, rng_u64(&seed), &series};
+    s->options.seed = half_seed(s, number % 2);
+    film_sum_follow(half, &s->film);
     TRY(pass_render(s->tracer, &pass, s->diag, &s->out->stats, &s->film, &result));
-    film_sum_add(&s->sum, &s->film);
+    film_sum_add(half, &s->film);
     photon_books_add(&s->out->books, &result.books, s->out->new_passes);
     s->out->caustic_hash = result.caustic_hash;
     s->out->global_hash = result.global_hash;
@@ -242,18 +270,18 @@ static Status resume(Series *s)
     if (!progressive->is_resumed)
         return OK;
     bool is_there;
-    TRY(checkpoint_read(s->diag, progressive->state_path, s->settings, &s->first, &s->sum,
+    TRY(checkpoint_read(s->diag, progressive->state_path, s->settings, &s->first, s->halves,
                         &is_there));
     if (!is_there)
         diag_warn(s->diag, WARN_FILE, SPAN_NONE,
                   "there is no '%s' to resume from: starting with the first pass",
                   progressive->state_path);
-    s->last_shown_pass = s->sum.passes;
-    s->out->last_radii = scaled(s->first, progressive_shrink(s->sum.passes));
-    if (s->sum.passes > s->passes_asked)
+    s->last_shown_pass = passes_done(s);
+    s->out->last_radii = scaled(s->first, progressive_shrink(passes_done(s)));
+    if (passes_done(s) > s->passes_asked)
         diag_warn(s->diag, WARN_FILE, SPAN_NONE,
                   "'%s' has %llu passes already: the picture is of these", progressive->state_path,
-                  (unsigned long long)s->sum.passes);
+                  (unsigned long long)passes_done(s));
     return OK;
 }
 
@@ -261,21 +289,36 @@ static Status resume(Series *s)
  * interruption counts. */
 static Status finish(Series *s, Status status)
 {
-    if (s->sum.passes == 0)
+    if (passes_done(s) == 0)
         return status;
     work_interrupted = 0;
-    if (s->last_shown_pass != s->sum.passes)
+    if (s->last_shown_pass != passes_done(s))
         TRY(keep_state(s));
-    make_picture(s);
-    s->out->image = s->film.image;
-    s->film.image = (Image){0};
+    TRY(make_picture(s));
+    s->out->image = s->shown.image;
+    s->shown.image = (Image){0};
     return status;
+}
+
+static Status make_films(Series *s)
+{
+    TRY(film_init(&s->film, s->asked, FILM_SAMPLES | FILM_CLUES, s->diag));
+    TRY(film_init(&s->shown, s->asked, FILM_SHOWN, s->diag));
+    TRY(error_map_init(&s->errors, &s->film, s->diag));
+    size_t pixels = (size_t)s->film.width * (size_t)s->film.height;
+    s->film.samples = mem_array(pixels, sizeof *s->film.samples);
+    if (!s->film.samples)
+        return diag_no_memory(s->diag, "the samples of pixels");
+    for (size_t i = 0; i < pixels; i++)
+        s->film.samples[i].wanted = (uint16_t)s->options.samples;
+    for (int i = 0; i < 2; i++)
+        TRY(film_sum_init(&s->halves[i], &s->film, s->diag));
+    return OK;
 }
 
 static Status run_series(Series *s)
 {
-    TRY(film_init(&s->film, s->asked, s->diag));
-    TRY(film_sum_init(&s->sum, &s->film, s->diag));
+    TRY(make_films(s));
     checkpoint_describe(tracer_scene(s->tracer), &s->options, s->settings);
     TRY(resume(s));
     Status status = run_passes(s);
@@ -293,8 +336,12 @@ Status progressive_render(const Tracer *tracer, const RenderOptions *options, do
                 .started = started};
     set_options(&s);
     Status status = run_series(&s);
-    film_sum_done(&s.sum);
+    for (int i = 0; i < 2; i++)
+        film_sum_done(&s.halves[i]);
+    error_map_done(&s.errors);
+    mem_free(s.film.samples);
     film_done(&s.film);
+    film_done(&s.shown);
     if (out->image.layer_count == 0) /* a failure leaves nothing */
         photon_books_done(&out->books);
     return status;

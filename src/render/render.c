@@ -2,6 +2,7 @@
 #include "render/render.h"
 
 #include "base/work.h"
+#include "render/error_map.h"
 #include "render/pass.h"
 #include "render/progressive.h"
 
@@ -34,16 +35,40 @@ static void take_result(Film *film, PassResult *pass, RenderResult *out)
     pass->books = (PhotonBooks){0};
 }
 
+/* How many samples a pixel has that has more than one. */
+static int samples_of(const RenderOptions *options)
+{
+    if (options->aa == AA_UNIFORM)
+        return options->samples;
+    return options->aa == AA_NONE ? 1 : options->aa_depth * options->aa_depth;
+}
+
+/* Make the picture of a film: linear light, and its errors instead of what they are found from. */
+static Status show_film(const Scene *scene, const RenderOptions *options, Film *film, Diag *diag,
+                        RenderResult *out)
+{
+    ErrorMap errors;
+    TRY(error_map_init(&errors, film, diag));
+    error_map_of_film(film, samples_of(options), &scene->settings, &errors);
+    film_linearize(&film->image, &scene->settings);
+    Status status = film_show_errors(film, diag);
+    if (status == OK)
+        status = error_map_show(&errors, &film->image, options, diag, out);
+    error_map_done(&errors);
+    return status;
+}
+
 static Status render_once(const Tracer *tracer, const RenderOptions *options, Diag *diag,
                           RenderResult *out)
 {
     Film film;
     PassResult result;
     PassOptions pass = {.render = options, .photon_seed = options->seed};
-    TRY(film_init(&film, options, diag));
+    TRY(film_init(&film, options, FILM_SAMPLES | FILM_CLUES, diag));
     Status status = pass_render(tracer, &pass, diag, &out->stats, &film, &result);
+    if (status == OK)
+        status = show_film(tracer_scene(tracer), options, &film, diag, out);
     if (status == OK) {
-        film_linearize(&film, &tracer_scene(tracer)->settings);
         report_end(options);
         take_result(&film, &result, out);
     }
@@ -106,6 +131,7 @@ Status render_scene(const Scene *scene, const RenderOptions *options, Diag *diag
 void render_result_done(RenderResult *result)
 {
     image_done(&result->image);
+    image_done(&result->error_picture);
     photon_books_done(&result->books);
 }
 

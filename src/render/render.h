@@ -12,7 +12,7 @@ typedef enum AaMethod { AA_NONE, AA_POV1, AA_POV2, AA_UNIFORM } AaMethod;
 /* Layers a user may ask for, as bits. */
 typedef enum LayerBit {
     LAYER_DIRECT = 1, LAYER_CAUSTIC = 2, LAYER_INDIRECT = 4, LAYER_Z = 8, LAYER_N = 16,
-    LAYER_ALBEDO = 32
+    LAYER_ALBEDO = 32, LAYER_ERROR_NOISE = 64, LAYER_ERROR_BIAS = 128
 } LayerBit;
 
 typedef struct RenderProgress {
@@ -27,6 +27,15 @@ typedef struct RenderProgress {
 typedef struct PassRadii {
     double caustic, global, volume;
 } PassRadii;
+
+/* The estimated error of a picture, relative to the luminance of each pixel (where that is less
+ * than a tenth of the picture's mean, to about this tenth): what 95 % of the pixels stay below. */
+typedef struct ErrorFigure {
+    bool is_known;
+    double whole;       /* of noise and bias together */
+    double bound;       /* the whole is below this with a confidence of 90 % */
+    double noise, bias; /* of each alone */
+} ErrorFigure;
 
 typedef struct RenderResult RenderResult;
 
@@ -56,6 +65,7 @@ typedef struct RenderOptions {
     unsigned layers;         /* LayerBits */
     bool has_alpha;          /* background transparent (+UA) */
     bool has_full_photons;   /* photons keep their light in full precision: see PhotonOptions */
+    bool has_error_picture;  /* a picture of the errors is asked for */
     PlanOptions plan;
     ProgressiveOptions progressive;
     void (*progress)(void *ctx, const RenderProgress *progress);
@@ -71,6 +81,9 @@ struct RenderResult {
     Image image;      /* beauty RGBA first, then the layers asked for */
     uint64_t passes, new_passes; /* of a progressive render: in all, and of this run; else 0 */
     PassRadii first_radii, last_radii; /* of a single pass: both what it gathered within */
+    ErrorFigure error;
+    Image error_picture; /* the relative errors as heat, display values: black 0.1 %, white 100 %,
+                            the logarithm between; without layers if not asked for */
     Stats stats;
     PhotonBooks books;
     Plan plan;        /* its memory is the scene's arena */

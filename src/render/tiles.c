@@ -70,6 +70,13 @@ static void block_uniform(EyePass *pass, FilmRect rect, int thread)
     film_store(pass->film, rect, seat->scratch.block);
 }
 
+static void block_series(EyePass *pass, FilmRect rect, int thread)
+{
+    Seat *seat = &pass->seats[thread];
+    aa_series(&pass->aa, rect, pass->film->samples, sample_film, seat, seat->scratch.block);
+    film_store(pass->film, rect, seat->scratch.block);
+}
+
 static void block_corners(EyePass *pass, FilmRect rect, int thread)
 {
     Seat *seat = &pass->seats[thread];
@@ -157,6 +164,8 @@ static Status keep_borders(EyePass *pass, Diag *diag)
 
 static Status run_sweeps(EyePass *pass, Diag *diag)
 {
+    if (pass->film->samples)
+        return sweep(pass, block_series, SWEEP_BLOCK);
     switch (pass->options->aa) {
     case AA_UNIFORM:
         return sweep(pass, block_uniform, SWEEP_BLOCK);
@@ -204,14 +213,11 @@ static void pass_done(EyePass *pass, Stats *stats)
     mem_free(pass->left);
 }
 
-/* With focal blur a sample is many rays already, spread over its pixel, but in one of many passes
- * a single one. */
-static void plan_samples(EyePass *pass, const Tracer *tracer, const EyeOptions *eye)
+/* With focal blur a sample is many rays already, spread over its pixel. */
+static void plan_samples(EyePass *pass, const Tracer *tracer)
 {
     int samples = pass->options->samples > 1 ? pass->options->samples : 1;
-    pass->aa.first = eye->first_sample;
-    pass->aa.has_gaps = eye->is_progressive;
-    if (plan_has(tracer_plan(tracer), FEATURE_FOCAL_BLUR) && !eye->is_progressive) {
+    if (plan_has(tracer_plan(tracer), FEATURE_FOCAL_BLUR)) {
         int rays = tracer_scene(tracer)->camera.blur_samples;
         samples = (samples + rays - 1) / rays;
         pass->is_spread_by_blur = true;
@@ -224,10 +230,10 @@ Status tiles_render(const Tracer *tracer, const RenderOptions *options, const Ey
 {
     EyePass pass = {.options = options,
                     .film = film,
-                    .sweeps = options->aa == AA_POV1 ? 2 : 1,
+                    .sweeps = options->aa == AA_POV1 && !film->samples ? 2 : 1,
                     .started = clock_wall()};
     aa_init(&pass.aa, film, options, &tracer_scene(tracer)->settings);
-    plan_samples(&pass, tracer, eye);
+    plan_samples(&pass, tracer);
     Status status = make_seats(&pass, tracer, eye, diag);
     if (status == OK)
         status = run_sweeps(&pass, diag);

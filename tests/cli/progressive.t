@@ -76,11 +76,11 @@ ok $? "a time limit ends it"
 run timeout 60 $P --time=1d --passes=2 -o "$T/both.exr" --progress=json
 [ "$code" -eq 0 ] && grep -q '"pass": 1, "passes": 2, "phase": ' "$T/err"
 ok $? "whichever limit comes first; progress counts passes"
-tail -n 1 "$T/err" | grep -qE '^\{"done": true, "passes": 2, "passes_of_this_run": 2, "seconds": [0-9.e-]+, "files": \["[^"]*both.exr"\]\}$'
+tail -n 1 "$T/err" | grep -qE '^\{"done": true, "passes": 2, "passes_of_this_run": 2, "seconds": [0-9.e-]+, "error": [0-9.e-]+, "error_bound": [0-9.e-]+, "files": \["[^"]*both.exr"\]\}$'
 ok $? "and says how it ended"
 run $P --passes=3 --resume -o "$T/both.exr"
 [ "$code" -eq 0 ] &&
-    grep -qE "^pms: 3 passes, 1 of them in this run, in [0-9.]+ s, saved in '.*both.exr'$" "$T/err"
+    grep -qE "^pms: 3 passes, 1 of them in this run, in [0-9.]+ s, error [0-9.]+ % \\(with 90 % confidence below [0-9.]+ %\\), saved in '.*both.exr'$" "$T/err"
 ok $? "so it does in a log"
 run $P --passes=4 --resume -o "$T/both.exr" --progress=none
 [ "$code" -eq 0 ] && [ ! -s "$T/err" ]

@@ -19,6 +19,10 @@
 static const char SETTINGS[] = "pms 1.2.3\nscene_text #0123456789abcdef\nseed 7\nlayers none\n";
 static const PassRadii RADII = {0.25, 1e-9, 3};
 
+enum { PIXELS = 5 * 3 };
+
+static PixelSamples samples[PIXELS]; /* of the films */
+
 static Film make_film(unsigned layers)
 {
     Film film;
@@ -26,35 +30,57 @@ static Film make_film(unsigned layers)
     options.width = 5;
     options.height = 3;
     options.layers = layers;
-    assert_int_equal(film_init(&film, &options, NULL), OK);
+    assert_int_equal(film_init(&film, &options, FILM_SAMPLES, NULL), OK);
+    film.samples = samples;
     return film;
 }
 
-static FilmSum make_sum(unsigned layers)
+/* The two halves of a picture. */
+typedef struct Halves {
+    FilmSum sum[2];
+} Halves;
+
+static Halves make_halves(unsigned layers)
 {
-    FilmSum sum;
+    Halves halves;
     Film film = make_film(layers);
-    assert_int_equal(film_sum_init(&sum, &film, NULL), OK);
+    for (int i = 0; i < 2; i++)
+        assert_int_equal(film_sum_init(&halves.sum[i], &film, NULL), OK);
     film_done(&film);
-    return sum;
+    return halves;
 }
 
-/* A sum of some passes, of all kinds of values. */
-static FilmSum some_sum(void)
+static void halves_done(Halves *halves)
 {
-    FilmSum sum = make_sum(LAYER_Z);
-    for (size_t i = 0; i < sum.count; i++)
-        sum.values[i] = i % 7 == 0 ? INFINITY : i % 3 == 0 ? -1e-310 : 1.0 / (double)(i + 1);
-    sum.passes = 12;
-    return sum;
+    for (int i = 0; i < 2; i++)
+        film_sum_done(&halves->sum[i]);
+}
+
+/* Sums of some passes, of all kinds of values. */
+static Halves some_halves(void)
+{
+    Halves halves = make_halves(LAYER_Z);
+    for (int h = 0; h < 2; h++) {
+        FilmSum *sum = &halves.sum[h];
+        for (size_t i = 0; i < sum->count; i++)
+            sum->values[i] = i % 7 == 0   ? INFINITY
+                             : i % 3 == 0 ? -1e-310
+                                          : 1.0 / (double)(i + 1 + (size_t)h);
+        for (uint32_t i = 0; i < PIXELS; i++) {
+            sum->taken[i] = 100 * i + (uint32_t)h;
+            sum->good[i] = UINT32_MAX - i;
+        }
+        sum->passes = h ? 12 : 13;
+    }
+    return halves;
 }
 
 static const char *write_state(const char *name)
 {
-    FilmSum sum = some_sum();
+    Halves halves = some_halves();
     const char *path = in_folder(name);
-    assert_int_equal(checkpoint_write(quiet(), path, SETTINGS, &RADII, &sum), OK);
-    film_sum_done(&sum);
+    assert_int_equal(checkpoint_write(quiet(), path, SETTINGS, &RADII, halves.sum), OK);
+    halves_done(&halves);
     return path;
 }
 
@@ -63,11 +89,11 @@ static Status read_state(const char *path, const char *settings)
 {
     bool is_there;
     PassRadii radii;
-    FilmSum sum = make_sum(LAYER_Z);
-    Status status = checkpoint_read(quiet(), path, settings, &radii, &sum, &is_there);
+    Halves halves = make_halves(LAYER_Z);
+    Status status = checkpoint_read(quiet(), path, settings, &radii, halves.sum, &is_there);
     if (status != OK)
-        assert_int_equal(sum.passes, 0);
-    film_sum_done(&sum);
+        assert_int_equal(halves.sum[0].passes + halves.sum[1].passes, 0);
+    halves_done(&halves);
     return status;
 }
 
@@ -76,15 +102,20 @@ static void what_is_read_is_what_was_written(void **state)
     (void)state;
     bool is_there = false;
     PassRadii radii;
-    FilmSum sum = make_sum(LAYER_Z), expected = some_sum();
+    Halves halves = make_halves(LAYER_Z), expected = some_halves();
     const char *path = write_state("good");
-    assert_int_equal(checkpoint_read(quiet(), path, SETTINGS, &radii, &sum, &is_there), OK);
+    assert_int_equal(checkpoint_read(quiet(), path, SETTINGS, &radii, halves.sum, &is_there), OK);
     assert_true(is_there);
     assert_memory_equal(&radii, &RADII, sizeof radii);
-    assert_int_equal(sum.passes, 12);
-    assert_memory_equal(sum.values, expected.values, sum.count * sizeof *sum.values);
-    film_sum_done(&sum);
-    film_sum_done(&expected);
+    for (int i = 0; i < 2; i++) {
+        FilmSum *sum = &halves.sum[i], *wanted = &expected.sum[i];
+        assert_int_equal(sum->passes, wanted->passes);
+        assert_memory_equal(sum->values, wanted->values, sum->count * sizeof *sum->values);
+        assert_memory_equal(sum->taken, wanted->taken, PIXELS * sizeof *sum->taken);
+        assert_memory_equal(sum->good, wanted->good, PIXELS * sizeof *sum->good);
+    }
+    halves_done(&halves);
+    halves_done(&expected);
 }
 
 static void no_file_is_no_error(void **state)
@@ -92,12 +123,13 @@ static void no_file_is_no_error(void **state)
     (void)state;
     bool is_there = true;
     PassRadii radii = RADII;
-    FilmSum sum = make_sum(0);
-    Status status = checkpoint_read(quiet(), in_folder("none"), SETTINGS, &radii, &sum, &is_there);
+    Halves halves = make_halves(0);
+    Status status =
+        checkpoint_read(quiet(), in_folder("none"), SETTINGS, &radii, halves.sum, &is_there);
     assert_int_equal(status, OK);
     assert_false(is_there);
-    assert_int_equal(sum.passes, 0);
-    film_sum_done(&sum);
+    assert_int_equal(halves.sum[0].passes, 0);
+    halves_done(&halves);
     assert_int_equal(read_state(folder, SETTINGS), ERR_FILE); /* a directory */
 }
 
@@ -179,14 +211,14 @@ static void a_full_disk_leaves_the_old_state(void **state)
     char *before, *after;
     const char *path = write_state("kept");
     size_t size = slurp(path, &before);
-    FilmSum sum = some_sum();
-    sum.passes = 13;
+    Halves halves = some_halves();
+    halves.sum[1].passes = 13;
     struct rlimit old, small = {.rlim_cur = 100};
     signal(SIGXFSZ, SIG_IGN);
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &old), 0);
     small.rlim_max = old.rlim_max;
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
-    Status status = checkpoint_write(quiet(), path, SETTINGS, &RADII, &sum);
+    Status status = checkpoint_write(quiet(), path, SETTINGS, &RADII, halves.sum);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &old), 0);
     assert_int_equal(status, ERR_FILE);
     assert_non_null(strstr(last_message, "cannot write"));
@@ -194,9 +226,9 @@ static void a_full_disk_leaves_the_old_state(void **state)
     assert_memory_equal(before, after, size);
     snprintf(before, 300, "%s.part%ld", path, (long)getpid());
     assert_int_equal(access(before, F_OK), -1);
-    status = checkpoint_write(quiet(), in_folder("no/such"), SETTINGS, &RADII, &sum);
+    status = checkpoint_write(quiet(), in_folder("no/such"), SETTINGS, &RADII, halves.sum);
     assert_int_equal(status, ERR_FILE);
-    film_sum_done(&sum);
+    halves_done(&halves);
     free(before);
     free(after);
 }
@@ -211,30 +243,43 @@ static void set_film(Film *film, float beauty, float depth)
         film->image.layers[1].pixels[i] = depth;
 }
 
-/* Colours are averaged, of depths the nearest is kept; what is no number counts as the mean of
- * what came before. */
+/* Let each pixel of a film have so many samples, and so many that can be used. */
+static void set_samples(uint16_t wanted, uint16_t good)
+{
+    for (int i = 0; i < PIXELS; i++)
+        samples[i] = (PixelSamples){0, wanted, good};
+}
+
+/* Colours are averaged over samples, whichever half they belong to; of depths the nearest is kept;
+ * a pixel without a usable sample adds nothing. */
 static void sums_become_means(void **state)
 {
     (void)state;
-    Film film = make_film(LAYER_Z);
-    FilmSum sum = make_sum(LAYER_Z);
-    film_sum_mean(&sum, &film);
-    assert_true(film.image.layers[0].pixels[7] == 0);
+    Film film = make_film(LAYER_Z), picture = make_film(LAYER_Z);
+    Halves halves = make_halves(LAYER_Z);
+    const float *beauty = picture.image.layers[0].pixels, *depth = picture.image.layers[1].pixels;
+    film_sum_mean(halves.sum, 2, &picture.image);
+    assert_true(beauty[7] == 0);
+    set_samples(1, 1);
     set_film(&film, 1, INFINITY);
-    film_sum_add(&sum, &film);
+    film_sum_add(&halves.sum[0], &film);
     set_film(&film, 4, 3);
-    film_sum_add(&sum, &film);
+    film_sum_add(&halves.sum[1], &film);
+    set_samples(4, 3);
+    samples[1].good = 0;
     set_film(&film, 1e9f, 5);
-    film.image.layers[0].pixels[7] = NAN;
     film.image.layers[1].pixels[2] = NAN;
-    film_sum_add(&sum, &film);
-    film_sum_mean(&sum, &film);
-    assert_int_equal(sum.passes, 3);
-    assert_true(film.image.layers[0].pixels[7] == 2.5f);
-    assert_true(film.image.layers[0].pixels[6] == (float)((5 + 1e9) / 3));
-    assert_true(film.image.layers[1].pixels[0] == 3 && film.image.layers[1].pixels[2] == 3);
-    film_sum_done(&sum);
+    film_sum_add(&halves.sum[0], &film);
+    film_sum_mean(halves.sum, 2, &picture.image);
+    assert_int_equal(halves.sum[0].passes, 2);
+    assert_true(beauty[7] == 2.5f);
+    assert_true(beauty[3] == (float)((5 + 3e9) / 5));
+    assert_true(depth[0] == 3 && depth[2] == 3);
+    film_sum_follow(&halves.sum[0], &film);
+    assert_int_equal(samples[1].first, 5);
+    halves_done(&halves);
     film_done(&film);
+    film_done(&picture);
 }
 
 int main(void)

@@ -1,0 +1,301 @@
+/* How wrong a picture may be.  SPDX-License-Identifier: Apache-2.0 */
+#include "render/error_map.h"
+
+#include "base/mem.h"
+#include "image/compare.h"
+#include "image/error_counts.h"
+
+#include <string.h>
+
+/* Pixels on either side over which squares and products are averaged: noise has fine structure,
+ * blur is as wide as a gathering. */
+enum { NOISE_REACH = 1, BIAS_REACH = 3 };
+
+/* The relative error that is black in the picture of the errors; 1 is white. */
+#define HEAT_LEAST 1e-3
+
+Status error_map_init(ErrorMap *map, const Film *film, Diag *diag)
+{
+    size_t pixels = (size_t)film->width * (size_t)film->height;
+    *map = (ErrorMap){.width = film->width, .height = film->height};
+    map->noise = mem_array(pixels, sizeof(float));
+    map->smooth = mem_array(pixels, sizeof(float));
+    map->bias = mem_array(pixels, sizeof(float));
+    map->luminance = mem_array(pixels, sizeof(float));
+    map->scratch = mem_array(pixels, sizeof(float));
+    if (map->noise && map->smooth && map->bias && map->luminance && map->scratch)
+        return OK;
+    error_map_done(map);
+    return diag_no_memory(diag, "the errors of the picture");
+}
+
+void error_map_done(ErrorMap *map)
+{
+    mem_free(map->noise);
+    mem_free(map->smooth);
+    mem_free(map->bias);
+    mem_free(map->luminance);
+    mem_free(map->scratch);
+    *map = (ErrorMap){.width = 0};
+}
+
+/* --- the halves ----------------------------------------------------------------------------- */
+
+static double half_luminance(const FilmSum *half, size_t pixel)
+{
+    size_t at = 4 * pixel; /* the beauty comes first */
+    return (double)rgb_luminance(rgb((float)film_sum_value(half, pixel, at),
+                                     (float)film_sum_value(half, pixel, at + 1),
+                                     (float)film_sum_value(half, pixel, at + 2)));
+}
+
+static double half_clue(const FilmSum *half, size_t pixel, ClueChannel clue)
+{
+    return film_sum_value(half, pixel, half->clues + CLUE_CHANNELS * pixel + (size_t)clue);
+}
+
+/* Half of the difference of two means of n_a and n_b samples; where they differ, what has the
+ * variance of the mean of all: v/(n_a + n_b), of a difference of variance v/n_a + v/n_b. */
+static double half_difference(double a, double b, double n_a, double n_b)
+{
+    return (a - b) * sqrt(n_a * n_b) / (n_a + n_b);
+}
+
+/* --- averages over neighbours --------------------------------------------------------------- */
+
+static int clamped(int i, int end)
+{
+    return i < 0 ? 0 : i < end ? i : end - 1;
+}
+
+/* Average values over the pixels around each, as far as `reach`; at the border those that there
+ * are count twice.  Along the rows, then along the columns: `lines` values of `step` apart. */
+static void average_lines(const float *from, float *to, int lines, int length, size_t line_step,
+                          size_t step, int reach)
+{
+    for (int line = 0; line < lines; line++) {
+        const float *in = from + (size_t)line * line_step;
+        float *out = to + (size_t)line * line_step;
+        for (int i = 0; i < length; i++) {
+            float sum = 0;
+            for (int k = i - reach; k <= i + reach; k++)
+                sum += in[(size_t)clamped(k, length) * step];
+            out[(size_t)i * step] = sum / (float)(2 * reach + 1);
+        }
+    }
+}
+
+static void average_around(float *values, float *scratch, int width, int height, int reach)
+{
+    size_t row = (size_t)width;
+    average_lines(values, scratch, height, width, row, 1, reach);
+    average_lines(scratch, values, width, height, 1, row, reach);
+}
+
+/* --- the map -------------------------------------------------------------------------------- */
+
+/* Average what was filled in pixel by pixel. */
+static void finish_map(ErrorMap *map)
+{
+    size_t pixels = (size_t)map->width * (size_t)map->height;
+    average_around(map->luminance, map->scratch, map->width, map->height, NOISE_REACH);
+    average_around(map->smooth, map->scratch, map->width, map->height, NOISE_REACH);
+    average_around(map->bias, map->scratch, map->width, map->height, BIAS_REACH);
+    for (size_t i = 0; i < pixels; i++) {
+        map->smooth[i] = sqrtf(map->smooth[i]);
+        map->bias[i] = map->bias[i] > 0 ? sqrtf(map->bias[i]) : 0;
+    }
+}
+
+void error_map_of_halves(const FilmSum halves[2], const Film *film, const SceneSettings *settings,
+                         ErrorMap *map)
+{
+    size_t pixels = (size_t)film->width * (size_t)film->height;
+    for (size_t i = 0; i < pixels; i++) {
+        double a = half_luminance(&halves[0], i), b = half_luminance(&halves[1], i);
+        double n_a = halves[0].good[i], n_b = halves[1].good[i], all = n_a + n_b;
+        double value = all > 0 ? (a * n_a + b * n_b) / all : 0, slope = film_slope(settings, value);
+        double noise = all > 0 ? half_difference(a, b, n_a, n_b) * slope : 0;
+        double blur_a = half_clue(&halves[0], i, CLUE_BLUR);
+        double blur_b = half_clue(&halves[1], i, CLUE_BLUR);
+        map->luminance[i] = (float)film_linear(settings, value);
+        map->noise[i] = (float)noise;
+        map->smooth[i] = (float)(noise * noise);
+        map->bias[i] = (float)(4 * blur_a * blur_b * slope * slope);
+    }
+    finish_map(map);
+}
+
+/* --- one pass ------------------------------------------------------------------------------- */
+
+/* What a pixel with one sample in its middle may be off, squared, over the squares of the second
+ * differences across it.  An edge with a step of J between two such samples, anywhere with equal
+ * chance, makes each of the two pixels wrong by J^2/24 in the mean square; a slope makes none. */
+#define BEND_PART (1.0 / 24)
+
+/* The error squared of n samples spread evenly over a pixel falls as n^-1 where they are noise and
+ * as n^-1.5 along an edge. */
+#define SPREAD_POWER 1.25
+
+/* Values of the normal distribution that are equally probable, up to the sign. */
+static const float NORMAL_PARTS[8] = {0.0784f, 0.2372f, 0.4023f, 0.5791f,
+                                      0.7764f, 1.0100f, 1.3180f, 1.8627f};
+
+/* Samples of a pixel are the same when their squares say so within rounding. */
+#define SAME_SAMPLES 1e-6
+
+static double bend2(const float *values, int x, int y, int width, int height)
+{
+    const float *row = values + (size_t)y * (size_t)width;
+    const float *above = values + (size_t)clamped(y - 1, height) * (size_t)width;
+    const float *below = values + (size_t)clamped(y + 1, height) * (size_t)width;
+    double here = 2 * (double)row[x];
+    double across = (double)row[clamped(x - 1, width)] + (double)row[clamped(x + 1, width)] - here;
+    double down = (double)above[x] + (double)below[x] - here;
+    return across * across + down * down;
+}
+
+/* The luminance of the film's pixels, in working values. */
+static void film_luminances(const Film *film, float *out)
+{
+    size_t pixels = (size_t)film->width * (size_t)film->height;
+    const float *p = film->image.layers[0].pixels;
+    for (size_t i = 0; i < pixels; i++, p += 4)
+        out[i] = rgb_luminance(rgb(p[0], p[1], p[2]));
+}
+
+/* Square of the error that the samples of a pixel leave. */
+static double sampling_error2(const float *values, const float *clues, int samples, int x, int y,
+                              const ErrorMap *map)
+{
+    size_t i = (size_t)y * (size_t)map->width + (size_t)x;
+    double value = (double)values[i], square = (double)clues[CLUE_SQUARE];
+    double spread = square - value * value;
+    if (samples > 1 && spread > SAME_SAMPLES * square)
+        return spread / pow(samples, SPREAD_POWER);
+    return BEND_PART * bend2(values, x, y, map->width, map->height);
+}
+
+void error_map_of_film(const Film *film, int samples, const SceneSettings *settings, ErrorMap *map)
+{
+    const float *clues = film->image.layers[film->image.layer_count - 1].pixels;
+    float *values = map->scratch;
+    film_luminances(film, values);
+    for (int y = 0; y < map->height; y++)
+        for (int x = 0; x < map->width; x++, clues += CLUE_CHANNELS) {
+            size_t i = (size_t)y * (size_t)map->width + (size_t)x;
+            double value = (double)values[i], slope = film_slope(settings, value);
+            double noise = (double)clues[CLUE_NOISE], blur = (double)clues[CLUE_BLUR];
+            double error2 = noise * noise + sampling_error2(values, clues, samples, x, y, map);
+            double error = slope * sqrt(error2);
+            map->luminance[i] = (float)film_linear(settings, value);
+            map->smooth[i] = (float)(error * error);
+            map->noise[i] = (float)error * NORMAL_PARTS[(5 * x + 3 * y) % 8];
+            map->bias[i] = (float)(4 * (blur * blur - noise * noise) * slope * slope);
+        }
+    finish_map(map);
+}
+
+/* --- figures -------------------------------------------------------------------------------- */
+
+typedef struct Counts {
+    ErrorCounts *whole, *noise, *bias;
+} Counts;
+
+static bool counts_init(Counts *counts)
+{
+    *counts = (Counts){error_counts_new(), error_counts_new(), error_counts_new()};
+    return counts->whole && counts->noise && counts->bias;
+}
+
+static void counts_done(Counts *counts)
+{
+    error_counts_free(counts->whole);
+    error_counts_free(counts->noise);
+    error_counts_free(counts->bias);
+}
+
+static double mean_luminance(const ErrorMap *map)
+{
+    size_t pixels = (size_t)map->width * (size_t)map->height;
+    double mean = 0;
+    for (size_t i = 0; i < pixels; i++)
+        mean += (double)map->luminance[i] / (double)pixels;
+    return mean;
+}
+
+/* The noise may add to the bias or take from it. */
+static void count_errors(const ErrorMap *map, Counts *counts)
+{
+    size_t width = (size_t)map->width, pixels = width * (size_t)map->height;
+    double mean = mean_luminance(map);
+    for (size_t i = 0; i < pixels; i++) {
+        double scale = error_scale((double)map->luminance[i], mean);
+        double noise = scale > 0 ? (double)map->noise[i] / scale : 0;
+        double bias = scale > 0 ? (double)map->bias[i] / scale : 0;
+        size_t x = i % width, y = i / width;
+        error_counts_add(counts->whole, x, y, fabs(noise + bias));
+        error_counts_add(counts->whole, x, y, fabs(noise - bias));
+        error_counts_add(counts->noise, x, y, fabs(noise));
+        error_counts_add(counts->bias, x, y, bias);
+    }
+}
+
+ErrorFigure error_figure(const ErrorMap *map)
+{
+    Counts counts;
+    ErrorFigure figure = {.is_known = counts_init(&counts)};
+    if (figure.is_known) {
+        count_errors(map, &counts);
+        figure.whole = error_counts_percentile(counts.whole);
+        figure.bound = error_counts_bound(counts.whole);
+        figure.noise = error_counts_percentile(counts.noise);
+        figure.bias = error_counts_percentile(counts.bias);
+    }
+    counts_done(&counts);
+    return figure;
+}
+
+static void show_layers(const ErrorMap *map, Image *picture)
+{
+    size_t size = (size_t)map->width * (size_t)map->height * sizeof(float);
+    ImageLayer *noise = image_find_layer(picture, film_layer_name(LAYER_ERROR_NOISE));
+    ImageLayer *bias = image_find_layer(picture, film_layer_name(LAYER_ERROR_BIAS));
+    if (noise)
+        memcpy(noise->pixels, map->smooth, size);
+    if (bias)
+        memcpy(bias->pixels, map->bias, size);
+}
+
+/* The relative error as heat. */
+static void paint_errors(const ErrorMap *map, float *rgb_values)
+{
+    size_t pixels = (size_t)map->width * (size_t)map->height;
+    double mean = mean_luminance(map);
+    for (size_t i = 0; i < pixels; i++) {
+        double error = hypot((double)map->smooth[i], (double)map->bias[i]);
+        double scale = error_scale((double)map->luminance[i], mean);
+        double shown = scale > 0 && error > 0 ? log10(error / scale / HEAT_LEAST) : 0;
+        image_heat((float)(shown / -log10(HEAT_LEAST)), rgb_values + 3 * i);
+    }
+}
+
+static Status show_picture(const ErrorMap *map, Diag *diag, Image *out)
+{
+    if (out->layer_count == 0) {
+        image_init(out, map->width, map->height);
+        out->is_display = true;
+        if (!image_add_layer(out, "", "RGB"))
+            return diag_no_memory(diag, "the picture of the errors");
+    }
+    paint_errors(map, out->layers[0].pixels);
+    return OK;
+}
+
+Status error_map_show(const ErrorMap *map, Image *picture, const RenderOptions *options, Diag *diag,
+                      RenderResult *out)
+{
+    out->error = error_figure(map);
+    show_layers(map, picture);
+    return options->has_error_picture ? show_picture(map, diag, &out->error_picture) : OK;
+}

@@ -1,0 +1,56 @@
+/* How wrong a picture may be, pixel by pixel and as a whole, without knowing the right one.
+ *
+ * Noise: the picture is the mean of two halves that have nothing random in common.  Half of their
+ * difference is then as large as the error of their mean: it has the same distribution, whatever
+ * made the noise (photons, pixels, lenses, lamps, gather rays).
+ *
+ * Bias: the light of photons is blurred.  What half of the area would give less is, in the mean,
+ * half of that error (LightEstimate).  One such difference is mostly noise; the product of those
+ * of the two halves is not: its mean is the square of the mean difference.  After the idea of
+ * Hachisuka, Jarosz, Jensen: A Progressive Error Estimation Framework for Global Illumination,
+ * 2010, who find the second derivative of the light from the photons.
+ *
+ * A picture of a single pass has no halves.  There the noise is made up of what each gathering says
+ * of its own photons and rays (LightEstimate), of how the samples of a pixel differ, and where
+ * there is one sample, of how its neighbours bend away; the bias is what its blur is above its
+ * noise.
+ *
+ * What settings of the scene cut off (max_trace_level, adc_bailout, the grid of an area light) is
+ * taken for right.  SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_RENDER_ERROR_MAP_H
+#define PMS_RENDER_ERROR_MAP_H
+
+#include "render/film_sum.h"
+
+/* Luminances of linear light, of every pixel. */
+typedef struct ErrorMap {
+    int width, height;
+    float *luminance; /* of the picture, averaged over neighbours */
+    float *noise;  /* an error as chance may make it, of either sign */
+    float *smooth; /* standard error, from the noise of the pixels around */
+    float *bias;   /* magnitude */
+    float *scratch;
+} ErrorMap;
+
+/* Make a map for films like this one.  Free with error_map_done. */
+Status error_map_init(ErrorMap *map, const Film *film, Diag *diag);
+void error_map_done(ErrorMap *map);
+
+/* Fill the map for the mean of two sums of the same kind of film, both with passes. */
+void error_map_of_halves(const FilmSum halves[2], const Film *film, const SceneSettings *settings,
+                         ErrorMap *map);
+
+/* Fill the map for a film with clues of a single pass, in working values.
+ *
+ * samples  of the pixels that have more than one. */
+void error_map_of_film(const Film *film, int samples, const SceneSettings *settings, ErrorMap *map);
+
+/* Return the figures of a map; not known when memory is out. */
+ErrorFigure error_figure(const ErrorMap *map);
+
+/* Put figures, layers and picture of the errors into a result, whose image has the layers that are
+ * asked for. */
+Status error_map_show(const ErrorMap *map, Image *picture, const RenderOptions *options, Diag *diag,
+                      RenderResult *out);
+
+#endif
