@@ -18,8 +18,10 @@ enum {
     CMD_EXPLAIN = 4,
     CMD_COMPARE = 8,
     CMD_VALIDATE = 16,
-    CMD_SCENE = CMD_RENDER | CMD_CHECK | CMD_EXPLAIN | CMD_VALIDATE, /* those that read a scene */
-    CMD_ALL = 31
+    CMD_SELFTEST = 32,
+    CMD_SCENE = CMD_RENDER | CMD_CHECK | CMD_EXPLAIN | CMD_VALIDATE | CMD_SELFTEST, /* those that
+                                                                                 read a scene */
+    CMD_ALL = 63
 };
 
 typedef enum OptionId {
@@ -70,6 +72,9 @@ static inline bool args_has(const Args *args, OptionId id)
 {
     return args->value[id] != NULL;
 }
+
+/* Fill what reading scenes needs from the command line: library paths, declares, size, limits. */
+Status args_sdl_options(const Args *args, SdlOptions *out);
 
 /* Read the scene of the command line's operand `index` with its library paths, declares and
  * size.  *seconds gets the time it took. */
