@@ -180,13 +180,17 @@ static void compress_item(void *ctx, size_t index, int thread)
     chunk->code = compress_chunk(w, chunk, w->blocks + (size_t)thread * w->block_size);
 }
 
+/* A chunk of the size it has uncompressed is read as such; the library (3.1.5) stores the
+ * compressed bytes also when they happen to be just as many. */
 static exr_result_t write_chunk(const ExrWriter *w, ExrChunk *chunk)
 {
     const exr_encode_pipeline_t *encoder = &chunk->encoder;
     if (chunk->code != EXR_ERR_SUCCESS)
         return chunk->code;
-    return exr_write_scanline_chunk(w->context, 0, chunk->y, encoder->compressed_buffer,
-                                    encoder->compressed_bytes);
+    bool is_smaller = encoder->compressed_bytes < encoder->packed_bytes;
+    return exr_write_scanline_chunk(
+        w->context, 0, chunk->y, is_smaller ? encoder->compressed_buffer : encoder->packed_buffer,
+        is_smaller ? encoder->compressed_bytes : encoder->packed_bytes);
 }
 
 /* Compress some chunks and write them; *y is the first line, and that after the last.  A picture
