@@ -16,7 +16,7 @@ Q       := $(if $(V),,@)
 
 PACKAGES := build-essential pkg-config libembree-dev libopenexr-dev libopencolorio-dev \
             libpng-dev libjpeg-dev libcmocka-dev libnanoflann-dev povray povray-includes \
-            povray-examples mandoc
+            povray-examples mandoc gnuplot-nox
 FLOORS   := $(shell sed 's/:.*//' src/FLOORS)
 CSRC     := $(foreach f,$(FLOORS),$(wildcard src/$(f)/*.c))
 CXXSRC   := $(wildcard src/image/*.cpp)

@@ -10,8 +10,8 @@
 /* The file beside the first picture that the state is kept in. */
 #define STATE_ENDING ".pmsstate"
 
-/* Read a time: a number and s, m, h or d; seconds without a letter. */
-static Status read_time(const Args *args, double *seconds)
+/* A number and s, m, h or d; seconds without a letter. */
+Status args_time(const Args *args, double *seconds)
 {
     static const char letters[] = "smhd";
     static const double units[] = {1, 60, 3600, 86400};
@@ -62,7 +62,7 @@ Status args_progressive(const Args *args, RenderOptions *out)
             "+A has no meaning with --progressive, whose passes each take --aa samples "
             "of a pixel");
     TRY(args_int(args, OPT_PASSES, 1, UINT32_MAX, 0, &passes));
-    TRY(read_time(args, &progressive->seconds));
+    TRY(args_time(args, &progressive->seconds));
     progressive->passes = (uint64_t)passes;
     progressive->is_resumed = args_has(args, OPT_RESUME);
     return state_path(args, &progressive->state_path);
