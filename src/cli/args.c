@@ -367,17 +367,24 @@ static Status read_size(const Args *args, int *width, int *height)
     return OK;
 }
 
+Status args_sdl_options(const Args *args, SdlOptions *out)
+{
+    *out = (SdlOptions){.library_paths = args->libraries,
+                        .library_path_count = args->library_count,
+                        .declares = args->declares,
+                        .declare_count = args->declare_count};
+    long threads;
+    TRY(read_size(args, &out->width, &out->height));
+    TRY(args_int(args, OPT_MAX_TOKENS, 1, LONG_MAX, SDL_MAX_TOKENS, &out->max_tokens));
+    TRY(args_int(args, OPT_THREADS, 1, WORK_THREADS_MAX, work_thread_count(), &threads));
+    out->threads = (int)threads;
+    return OK;
+}
+
 Status args_load_scene(const Args *args, int index, Scene **out, double *seconds)
 {
-    SdlOptions sdl = {.library_paths = args->libraries,
-                      .library_path_count = args->library_count,
-                      .declares = args->declares,
-                      .declare_count = args->declare_count};
-    long threads;
-    TRY(read_size(args, &sdl.width, &sdl.height));
-    TRY(args_int(args, OPT_MAX_TOKENS, 1, LONG_MAX, SDL_MAX_TOKENS, &sdl.max_tokens));
-    TRY(args_int(args, OPT_THREADS, 1, WORK_THREADS_MAX, work_thread_count(), &threads));
-    sdl.threads = (int)threads;
+    SdlOptions sdl;
+    TRY(args_sdl_options(args, &sdl));
     double start = clock_wall();
     Status status = sdl_load(args->diag, args->operands[index], &sdl, out);
     *seconds = clock_wall() - start;

@@ -18,8 +18,9 @@ enum {
     CMD_EXPLAIN = 4,
     CMD_COMPARE = 8,
     CMD_VALIDATE = 16,
+    CMD_SELFTEST = 32,
     CMD_STUDY = 64,
-    CMD_SCENE = CMD_RENDER | CMD_CHECK | CMD_EXPLAIN | CMD_VALIDATE |
+    CMD_SCENE = CMD_RENDER | CMD_CHECK | CMD_EXPLAIN | CMD_VALIDATE | CMD_SELFTEST |
                 CMD_STUDY, /* those that read a scene */
     CMD_ALL = 127
 };
@@ -75,6 +76,9 @@ static inline bool args_has(const Args *args, OptionId id)
 
 /* Read --time into *seconds, which stays as it is without one. */
 Status args_time(const Args *args, double *seconds);
+
+/* Fill what reading scenes needs from the command line: library paths, declares, size, limits. */
+Status args_sdl_options(const Args *args, SdlOptions *out);
 
 /* Read the scene of the command line's operand `index` with its library paths, declares and
  * size.  *seconds gets the time it took. */

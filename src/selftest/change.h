@@ -1,0 +1,67 @@
+/* What a picture of a moved scene has in it that the unmoved one has not.
+ *
+ * Everything is compared as a display shows it, white 1.  How far chance reaches is known from
+ * pictures of the unmoved scene with other seeds: where those are alike, the moved one must be too.
+ * SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_SELFTEST_CHANGE_H
+#define PMS_SELFTEST_CHANGE_H
+
+#include "image/image.h"
+
+/* A difference of a channel above this is seen: two steps of an 8-bit display. */
+#define CHANGE_VISIBLE (2.0 / 255)
+
+/* So many times what other seeds change within two pixels is hardly chance, and surely none.  Of
+ * what is in between, which noise with rare bright spots has, there may be so large a part. */
+#define CHANGE_HARDLY 3.0
+#define CHANGE_SURELY 10.0
+#define CHANGE_ODD_MOST 0.0025
+
+/* At most this part of the pixels may be on the other side of an edge. */
+#define CHANGE_EDGES_MOST 0.01
+
+/* The mean of the picture may differ by so much of it, and so many times the range over seeds. */
+#define CHANGE_MEAN_PART 0.002
+#define CHANGE_MEAN_RANGES 3.0
+
+typedef enum ChangeKind {
+    CHANGE_NONE,  /* every bit is the same */
+    CHANGE_HOLDS, /* nothing to be seen but chance */
+    CHANGE_EDGES, /* pixels at edges show what is beside them */
+    CHANGE_SEEN,  /* it looks different */
+    CHANGE_BITS   /* it may not differ in any bit, and does */
+} ChangeKind;
+
+typedef struct Change {
+    bool is_exact;           /* no number was rounded by the move: not one bit may change */
+    size_t pixels, bits;     /* of the picture; those with any other bit */
+    size_t seen, edges, odd; /* pixels that look different; those of them that are explained by
+                                edges; others that are hardly chance, but may be */
+    double rmse, largest;    /* of the display values of all channels */
+    double mean_off;         /* of the means, relative; and how much chance allows */
+    double mean_allowed;
+    int x, y; /* the pixel that changed most */
+} Change;
+
+/* Pictures of the unmoved scene, made ready; of the caller's until change_base_done. */
+typedef struct ChangeBase {
+    int width, height;
+    float *still, *mean,
+        *noise;                /* display values, 3 a pixel; the first is that of the first seed */
+    const float *bits;         /* of the picture with the first seed, 4 a pixel, borrowed */
+    double light, light_range; /* mean of the first picture; largest less smallest of all */
+    double seed_rmse;          /* between the first two pictures */
+} ChangeBase;
+
+/* pictures: `count`, at least 2, of one size, each with another seed.  ERR_MEMORY or OK. */
+Status change_base_init(ChangeBase *base, const Image *pictures, int count, Diag *diag);
+void change_base_done(ChangeBase *base);
+
+/* Fill all of `out` but is_exact, which is asked.  ERR_MEMORY or OK. */
+Status change_find(const ChangeBase *base, const Image *moved, Diag *diag, Change *out);
+
+/* Return the verdict, and whether that is as it should be. */
+ChangeKind change_kind(const Change *change);
+bool change_is_good(const Change *change);
+
+#endif
