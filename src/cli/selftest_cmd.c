@@ -135,8 +135,8 @@ static void print_move_line(const MoveResult *result)
     const Change *change = &result->change;
     ChangeKind kind = change_kind(change);
     printf("%-27s %7.3f %7.3f %9.3g %9.3g %9.3g  %s\n", result->name,
-           100 * part(change->seen, change), 100 * part(change->edges, change), change->rmse,
-           change->largest, 100 * change->mean_off, verdicts[kind]);
+           100 * part(change->counts.seen, change), 100 * part(change->counts.edges, change),
+           change->rmse, change->largest, 100 * change->mean_off, verdicts[kind]);
     if (kind >= CHANGE_EDGES)
         print_worst(result);
     fflush(stdout);
@@ -163,9 +163,9 @@ static void print_move_json(const MovePrinter *printer, const MoveResult *result
         const char *name;
         double value;
     } numbers[] = {{"bits", part(change->bits, change)},
-                   {"seen", part(change->seen, change)},
-                   {"edges", part(change->edges, change)},
-                   {"odd", part(change->odd, change)},
+                   {"seen", part(change->counts.seen, change)},
+                   {"edges", part(change->counts.edges, change)},
+                   {"odd", part(change->counts.odd, change)},
                    {"rmse", change->rmse},
                    {"largest", change->largest},
                    {"mean_off", change->mean_off},

@@ -13,6 +13,9 @@ enum {
     EDGE_REACH = 1    /* pixels: how far beside it an edge shows what is there */
 };
 
+/* A picture darker than this is black. */
+#define LIGHT_LEAST 1e-6
+
 /* What a display shows of light; what is no number is shown as none is. */
 static float shown(float light)
 {
@@ -70,63 +73,7 @@ static Range around(const float *values, const ChangeBase *base, int x, int y, i
     return out;
 }
 
-/* --- the unmoved scene ----------------------------------------------------------------------- */
-
-/* Add a picture to the mean, the means of light, and what is furthest from the first. */
-static void take(ChangeBase *base, const float *picture, size_t count, int pictures)
-{
-    for (size_t i = 0; i < count; i++) {
-        base->mean[i] += picture[i] / (float)pictures;
-        base->noise[i] = fmaxf(base->noise[i], fabsf(picture[i] - base->still[i]));
-    }
-    double light = mean_of(picture, count);
-    base->light_range = fmax(base->light_range, fabs(light - base->light));
-}
-
-static float *room_for(size_t count)
-{
-    return mem_array(count, sizeof(float));
-}
-
-Status change_base_init(ChangeBase *base, const Image *pictures, int count, Diag *diag)
-{
-    int width = pictures->width, height = pictures->height;
-    size_t values = 3 * (size_t)width * (size_t)height;
-    float *other = room_for(values);
-    *base = (ChangeBase){.width = width,
-                         .height = height,
-                         .still = room_for(values),
-                         .mean = room_for(values),
-                         .noise = room_for(values),
-                         .bits = pixels_of(pictures)};
-    if (!other || !base->still || !base->mean || !base->noise) {
-        mem_free(other);
-        change_base_done(base);
-        return diag_no_memory(diag, "pictures to compare");
-    }
-    show(pictures, base->still);
-    memset(base->mean, 0, values * sizeof *base->mean);
-    memset(base->noise, 0, values * sizeof *base->noise);
-    base->light = mean_of(base->still, values);
-    for (int i = 0; i < count; i++) {
-        show(&pictures[i], other);
-        take(base, other, values, count);
-        if (i == 1)
-            base->seed_rmse = rmse_of(other, base->still, values);
-    }
-    mem_free(other);
-    return OK;
-}
-
-void change_base_done(ChangeBase *base)
-{
-    mem_free(base->still);
-    mem_free(base->mean);
-    mem_free(base->noise);
-    *base = (ChangeBase){0};
-}
-
-/* --- the moved scene ------------------------------------------------------------------------- */
+/* --- one pixel ------------------------------------------------------------------------------- */
 
 typedef enum PixelChange { PIXEL_SAME, PIXEL_EDGE, PIXEL_ODD, PIXEL_SEEN } PixelChange;
 
@@ -152,60 +99,182 @@ static PixelChange judge(const ChangeBase *base, const float *moved, int x, int 
     return is_edge ? PIXEL_EDGE : is_sure ? PIXEL_SEEN : PIXEL_ODD;
 }
 
-/* Count what changed; the worst pixel is one of those that changed most. */
-static void judge_all(const ChangeBase *base, const float *moved, Change *out)
+/* Count what changed; *worst_x and *worst_y get the pixel that did most. */
+static ChangeCounts judge_all(const ChangeBase *base, const float *moved, int *worst_x,
+                              int *worst_y)
 {
+    ChangeCounts out = {0};
     PixelChange worst = PIXEL_SAME;
     double most = -1;
     for (int y = 0; y < base->height; y++)
         for (int x = 0; x < base->width; x++) {
             double off;
             PixelChange change = judge(base, moved, x, y, &off);
-            out->seen += change != PIXEL_SAME;
-            out->edges += change == PIXEL_EDGE;
-            out->odd += change == PIXEL_ODD;
+            out.seen += change != PIXEL_SAME;
+            out.edges += change == PIXEL_EDGE;
+            out.odd += change == PIXEL_ODD;
             if (change > worst || (change == worst && off > most)) {
                 worst = change;
                 most = off;
-                out->x = x;
-                out->y = y;
+                *worst_x = x;
+                *worst_y = y;
             }
         }
+    return out;
+}
+
+/* --- the unmoved scene ----------------------------------------------------------------------- */
+
+/* The display values of all seeds. */
+typedef struct Shown {
+    float *values; /* of one picture after the other */
+    size_t count;  /* of values of a picture */
+    int pictures;
+} Shown;
+
+static const float *shown_at(const Shown *shown, int picture)
+{
+    return shown->values + (size_t)picture * shown->count;
+}
+
+/* Set the mean and the noise of all pictures but `without` (negative: of all). */
+static void fill(ChangeBase *base, const Shown *shown, int without)
+{
+    float used = (float)(without < 0 ? shown->pictures : shown->pictures - 1);
+    for (size_t i = 0; i < shown->count; i++) {
+        float sum = 0, low = INFINITY, high = -INFINITY;
+        for (int k = 0; k < shown->pictures; k++) {
+            float value = shown_at(shown, k)[i];
+            if (k == without)
+                continue;
+            sum += value;
+            low = fminf(low, value);
+            high = fmaxf(high, value);
+        }
+        base->mean[i] = low < high ? sum / used : low;
+        base->noise[i] = high - low;
+    }
+}
+
+static size_t larger(size_t a, size_t b)
+{
+    return a > b ? a : b;
+}
+
+/* Judge each seed by the others. */
+static void find_chance(ChangeBase *base, const Shown *shown)
+{
+    ChangeCounts *chance = &base->chance;
+    for (int k = 0; k < shown->pictures; k++) {
+        int x, y;
+        fill(base, shown, k);
+        ChangeCounts counts = judge_all(base, shown_at(shown, k), &x, &y);
+        chance->seen = larger(chance->seen, counts.seen - counts.edges - counts.odd);
+        chance->edges = larger(chance->edges, counts.edges);
+        chance->odd = larger(chance->odd, counts.odd);
+    }
+}
+
+static void find_light(ChangeBase *base, const Shown *shown)
+{
+    base->light = mean_of(shown_at(shown, 0), shown->count);
+    base->seed_rmse = rmse_of(shown_at(shown, 0), shown_at(shown, 1), shown->count);
+    for (int k = 1; k < shown->pictures; k++) {
+        double light = mean_of(shown_at(shown, k), shown->count);
+        base->light_range = fmax(base->light_range, fabs(light - base->light));
+    }
+}
+
+Status change_base_init(ChangeBase *base, const Image *pictures, int count, Diag *diag)
+{
+    size_t values = 3 * (size_t)pictures->width * (size_t)pictures->height;
+    *base = (ChangeBase){.width = pictures->width,
+                         .height = pictures->height,
+                         .mean = mem_array(values, sizeof(float)),
+                         .noise = mem_array(values, sizeof(float)),
+                         .first = pictures};
+    Shown shown = {mem_array((size_t)count * values, sizeof(float)), values, count};
+    Status status = base->mean && base->noise && shown.values
+                        ? OK
+                        : diag_no_memory(diag, "pictures to compare");
+    for (int k = 0; k < count && status == OK; k++)
+        show(&pictures[k], shown.values + (size_t)k * values);
+    if (status == OK) {
+        find_chance(base, &shown);
+        find_light(base, &shown);
+        fill(base, &shown, -1);
+    } else {
+        change_base_done(base);
+    }
+    mem_free(shown.values);
+    return status;
+}
+
+void change_base_done(ChangeBase *base)
+{
+    mem_free(base->mean);
+    mem_free(base->noise);
+    *base = (ChangeBase){0};
+}
+
+/* --- the moved scene ------------------------------------------------------------------------- */
+
+static size_t count_bits(const Image *a, const Image *b)
+{
+    size_t pixels = (size_t)a->width * (size_t)a->height, count = 0;
+    for (size_t i = 0; i < pixels; i++)
+        count += memcmp(pixels_of(a) + 4 * i, pixels_of(b) + 4 * i, 4 * sizeof(float)) != 0;
+    return count;
+}
+
+static double largest_of(const float *a, const float *b, size_t count)
+{
+    double largest = 0;
+    for (size_t i = 0; i < count; i++)
+        largest = fmax(largest, fabs((double)a[i] - (double)b[i]));
+    return largest;
 }
 
 Status change_find(const ChangeBase *base, const Image *moved, Diag *diag, Change *out)
 {
-    size_t pixels = (size_t)base->width * (size_t)base->height;
-    float *values = room_for(3 * pixels);
-    if (!values)
+    size_t pixels = (size_t)base->width * (size_t)base->height, values = 3 * pixels;
+    float *still = mem_array(2 * values, sizeof *still);
+    if (!still)
         return diag_no_memory(diag, "pictures to compare");
-    *out = (Change){.is_exact = out->is_exact, .pixels = pixels};
-    show(moved, values);
-    for (size_t i = 0; i < pixels; i++)
-        out->bits += memcmp(pixels_of(moved) + 4 * i, base->bits + 4 * i, 4 * sizeof(float)) != 0;
-    for (size_t i = 0; i < 3 * pixels; i++)
-        out->largest = fmax(out->largest, fabs((double)values[i] - (double)base->still[i]));
-    out->rmse = rmse_of(values, base->still, 3 * pixels);
-    out->mean_off = fabs(mean_of(values, 3 * pixels) - base->light) / fmax(base->light, 1e-6);
-    out->mean_allowed =
-        CHANGE_MEAN_PART + CHANGE_MEAN_RANGES * base->light_range / fmax(base->light, 1e-6);
-    judge_all(base, values, out);
-    mem_free(values);
+    float *now = still + values;
+    double light = fmax(base->light, LIGHT_LEAST);
+    show(base->first, still);
+    show(moved, now);
+    *out = (Change){.is_exact = out->is_exact, .pixels = pixels, .chance = base->chance};
+    out->bits = count_bits(base->first, moved);
+    out->largest = largest_of(still, now, values);
+    out->rmse = rmse_of(still, now, values);
+    out->mean_off = fabs(mean_of(now, values) - base->light) / light;
+    out->mean_allowed = CHANGE_MEAN_PART + CHANGE_MEAN_RANGES * base->light_range / light;
+    out->counts = judge_all(base, now, &out->x, &out->y);
+    mem_free(still);
     return OK;
+}
+
+/* Are there more than a part of the pixels, and what chance has? */
+static bool are_many(size_t count, size_t chance, double part, const Change *change)
+{
+    return (double)count > part * (double)change->pixels + CHANGE_CHANCES * (double)chance;
 }
 
 ChangeKind change_kind(const Change *change)
 {
+    const ChangeCounts *counts = &change->counts, *chance = &change->chance;
     if (change->bits == 0)
         return CHANGE_NONE;
     if (change->is_exact)
         return CHANGE_BITS;
-    double pixels = (double)change->pixels;
-    if (change->seen > change->edges + change->odd ||
-        (double)change->edges > CHANGE_EDGES_MOST * pixels ||
-        (double)change->odd > CHANGE_ODD_MOST * pixels || change->mean_off > change->mean_allowed)
+    if (are_many(counts->seen - counts->edges - counts->odd, chance->seen, 0, change) ||
+        are_many(counts->edges, chance->edges, CHANGE_EDGES_MOST, change) ||
+        are_many(counts->odd, chance->odd, CHANGE_ODD_MOST, change) ||
+        change->mean_off > change->mean_allowed)
         return CHANGE_SEEN;
-    return change->edges > 0 ? CHANGE_EDGES : CHANGE_HOLDS;
+    return counts->edges > 0 ? CHANGE_EDGES : CHANGE_HOLDS;
 }
 
 bool change_is_good(const Change *change)

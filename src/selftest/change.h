@@ -17,6 +17,10 @@
 #define CHANGE_SURELY 10.0
 #define CHANGE_ODD_MOST 0.0025
 
+/* Noise may come in rare large spots.  Each seed is judged by the others, as if it were a move: of
+ * what the worst of them has, a move may have so many times as much besides. */
+#define CHANGE_CHANCES 2
+
 /* At most this part of the pixels may be on the other side of an edge. */
 #define CHANGE_EDGES_MOST 0.01
 
@@ -32,13 +36,18 @@ typedef enum ChangeKind {
     CHANGE_BITS   /* it may not differ in any bit, and does */
 } ChangeKind;
 
+/* Pixels that look different: all; those explained by edges; others that are hardly chance. */
+typedef struct ChangeCounts {
+    size_t seen, edges, odd;
+} ChangeCounts;
+
 typedef struct Change {
-    bool is_exact;           /* no number was rounded by the move: not one bit may change */
-    size_t pixels, bits;     /* of the picture; those with any other bit */
-    size_t seen, edges, odd; /* pixels that look different; those of them that are explained by
-                                edges; others that are hardly chance, but may be */
-    double rmse, largest;    /* of the display values of all channels */
-    double mean_off;         /* of the means, relative; and how much chance allows */
+    bool is_exact;       /* no number was rounded by the move: not one bit may change */
+    size_t pixels, bits; /* of the picture; those with any other bit */
+    ChangeCounts counts;
+    ChangeCounts chance;  /* as large as they come by chance alone, each */
+    double rmse, largest; /* of the display values of all channels */
+    double mean_off;      /* of the means, relative; and how much chance allows */
     double mean_allowed;
     int x, y; /* the pixel that changed most */
 } Change;
@@ -46,14 +55,14 @@ typedef struct Change {
 /* Pictures of the unmoved scene, made ready; of the caller's until change_base_done. */
 typedef struct ChangeBase {
     int width, height;
-    float *still, *mean,
-        *noise;                /* display values, 3 a pixel; the first is that of the first seed */
-    const float *bits;         /* of the picture with the first seed, 4 a pixel, borrowed */
-    double light, light_range; /* mean of the first picture; largest less smallest of all */
+    float *mean, *noise; /* display values, 3 a pixel; noise: the range over the seeds */
+    const Image *first;  /* the picture with the first seed, borrowed */
+    ChangeCounts chance;
+    double light, light_range; /* mean of the first picture; largest difference of another's */
     double seed_rmse;          /* between the first two pictures */
 } ChangeBase;
 
-/* pictures: `count`, at least 2, of one size, each with another seed.  ERR_MEMORY or OK. */
+/* pictures: `count`, at least 3, of one size, each with another seed.  ERR_MEMORY or OK. */
 Status change_base_init(ChangeBase *base, const Image *pictures, int count, Diag *diag);
 void change_base_done(ChangeBase *base);
 

@@ -127,7 +127,7 @@ static void chance_is_no_change(void **state)
     assert_true(change_is_good(&change));
     pixel(&f, 5, 6)[0] += 0.1f; /* one bright spot */
     change = find(&f, false);
-    assert_int_equal(change.odd, 1);
+    assert_int_equal(change.counts.odd, 1);
     assert_int_equal(change_kind(&change), CHANGE_HOLDS);
     pixel(&f, 5, 6)[0] += 0.6f;
     change = find(&f, false);
@@ -136,7 +136,39 @@ static void chance_is_no_change(void **state)
     for (int i = 0; i < SIDE * SIDE; i++) /* as much darker as no seed is */
         f.moved.layers[0].pixels[4 * i + 1] -= 0.02f;
     change = find(&f, false);
-    assert_int_equal(change.seen, 0);
+    assert_int_equal(change.counts.seen, 0);
+    assert_int_equal(change_kind(&change), CHANGE_SEEN);
+    fixture_done(&f);
+}
+
+static void add_spot(Image *image, int x, int y)
+{
+    for (int v = y; v < y + 3; v++)
+        for (int u = x; u < x + 3; u++)
+            for (int c = 0; c < 3; c++)
+                image->layers[0].pixels[4 * (v * SIDE + u) + c] += 0.05f;
+}
+
+/* One seed has a bright spot where the others have none: another may have one elsewhere, but not
+ * ten. */
+static void rare_spots(void **state)
+{
+    (void)state;
+    Fixture f;
+    fixture_init(&f, 0.01f);
+    add_spot(&f.moved, 3, 20);
+    Change change = find(&f, false);
+    assert_true(change.counts.odd > 0.0025 * SIDE * SIDE);
+    assert_int_equal(change_kind(&change), CHANGE_SEEN);
+    change_base_done(&f.base);
+    add_spot(&f.pictures[2], 4, 4);
+    assert_int_equal(change_base_init(&f.base, f.pictures, PICTURES, &f.diag), OK);
+    assert_true(f.base.chance.odd > 0);
+    change = find(&f, false);
+    assert_true(change_is_good(&change));
+    for (int i = 0; i < 5; i++)
+        add_spot(&f.moved, 22, 2 + 5 * i);
+    change = find(&f, false);
     assert_int_equal(change_kind(&change), CHANGE_SEEN);
     fixture_done(&f);
 }
@@ -148,8 +180,8 @@ static void without_chance_all_is_seen(void **state)
     fixture_init(&f, 0);
     pixel(&f, 3, 4)[1] += 0.05f;
     Change change = find(&f, false);
-    assert_int_equal(change.seen, 1);
-    assert_int_equal(change.edges, 0);
+    assert_int_equal(change.counts.seen, 1);
+    assert_int_equal(change.counts.edges, 0);
     assert_int_equal(change.x, 3);
     assert_int_equal(change.y, 4);
     assert_int_equal(change_kind(&change), CHANGE_SEEN);
@@ -167,7 +199,7 @@ static void edges_may_move_a_little(void **state)
     for (int c = 0; c < 3; c++)
         pixel(&f, SIDE / 2, 5)[c] = 0.2f; /* as its left neighbour */
     Change change = find(&f, false);
-    assert_int_equal(change.edges, 1);
+    assert_int_equal(change.counts.edges, 1);
     assert_int_equal(change_kind(&change), CHANGE_EDGES);
     assert_true(change_is_good(&change));
     for (int y = 0; y < SIDE; y++) /* the whole edge is another one */
@@ -185,6 +217,7 @@ int main(void)
         cmocka_unit_test(claims_of_chance),
         cmocka_unit_test(same_bits),
         cmocka_unit_test(chance_is_no_change),
+        cmocka_unit_test(rare_spots),
         cmocka_unit_test(without_chance_all_is_seen),
         cmocka_unit_test(edges_may_move_a_little),
     };
