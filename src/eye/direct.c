@@ -90,6 +90,7 @@ static void count_gather(EyeThread *eye, const PhotonMap *map, int photons)
     counts[STAT_GATHERED] += (uint64_t)photons;
     if (map == eye->options.caustic)
         counts[STAT_GATHERED_CAUSTIC] += (uint64_t)photons;
+    photon_gather_see(map, eye->gather);
 }
 
 /* Add a photon, of which a surface sends on a share. */

@@ -121,6 +121,7 @@ static Rgb irradiance_there(EyeThread *eye, const SurfaceSample *s, V3 n, double
         int count = photon_gather(options->global, s->at.p, n, &limits, eye->gather, &light);
         eye->trace.stats.count[STAT_GATHERS]++;
         eye->trace.stats.count[STAT_GATHERED] += (uint64_t)count;
+        photon_gather_see(options->global, eye->gather);
     }
     return light;
 }

@@ -470,8 +470,9 @@ Status emission_init(Emission *emission, const Tracer *tracer, MapKind map,
     if (emission->beam_count == 0)
         return OK;
     emission_set_keys(emission, 0);
+    double part = options->miniature ? options->miniature->photons : 1;
     TRY(emission_pilot(emission, photons_wanted(emission, false)));
-    return share_sources(emission, (uint64_t)photons_wanted(emission, true));
+    return share_sources(emission, (uint64_t)ceil(part * photons_wanted(emission, true)));
 }
 
 void emission_done(Emission *emission, Stats *add_to)

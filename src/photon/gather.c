@@ -177,6 +177,12 @@ int photon_gather_list(const PhotonMap *map, V3 p, V3 n, const GatherLimits *lim
     return (int)found->count;
 }
 
+void photon_gather_see(const PhotonMap *map, const GatherScratch *scratch)
+{
+    for (size_t i = 0; map->seen && i < scratch->found.count; i++)
+        photon_map_see(map, scratch->found.index[i]);
+}
+
 int photon_nearest(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
                    GatherScratch *scratch, const uint32_t **out, double *radius2)
 {

@@ -121,6 +121,9 @@ int photon_gather_estimate(const PhotonMap *map, V3 p, V3 n, const GatherLimits 
 int photon_gather_list(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
                        GatherScratch *scratch, const GatheredPhoton **out);
 
+/* Note that the photons of the last estimate with `scratch`, from a watched map, were seen. */
+void photon_gather_see(const PhotonMap *map, const GatherScratch *scratch);
+
 /* Find the photons an estimate would use: their numbers (photon_map_at) in no particular order,
  * and the square of the radius.  Of photons equally far the lower number is nearer. */
 int photon_nearest(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,

@@ -66,6 +66,8 @@ enum { FACINGS = 6 };
 struct IrradianceMap {
     PhotonMap *places[FACINGS]; /* NULL: none */
     double reach;               /* how far the furthest reaching place speaks, scene units */
+    const PhotonMap *photons;   /* that the estimates were made from; must outlive the map */
+    double radius;              /* the most that an estimate reaches */
 };
 
 /* How much a normal faces one of the six ways. */
@@ -222,6 +224,20 @@ static Rgb sum_photons(TraceThread *thread, const PhotonMap *map, const Disk *di
     return rgb((float)r, (float)g, (float)b);
 }
 
+/* Find the photons that speak at a place. */
+static int find_photons(const PhotonMap *photons, const Photon *place, V3 p, double radius,
+                        GatherScratch *scratch, const uint32_t **index, double *radius2)
+{
+    const GatherLimits limits = {.max_photons = PLACE_PHOTONS,
+                                 .max_radius = radius,
+                                 .shape = GATHER_DISK,
+                                 .normal_cosine = PHOTON_COSINE,
+                                 .side =
+                                     place->flags & PHOTON_INSIDE ? GATHER_INSIDE : GATHER_OUTSIDE};
+    return photon_nearest(photons, p, normal14_decode(place->flags >> 2), &limits, scratch, index,
+                          radius2);
+}
+
 static void estimate(PlaceWork *work, TraceThread *thread, GatherScratch *scratch, size_t number)
 {
     Photon *place = &work->places[number];
@@ -231,15 +247,10 @@ static void estimate(PlaceWork *work, TraceThread *thread, GatherScratch *scratc
                  .is_inside = (place->flags & PHOTON_INSIDE) != 0};
     V3 offset = v3_sub(disk.p, photon_map_center(work->photons));
     disk.rounding = PLACE_ROUNDING * v3_len(offset);
-    const GatherLimits limits = {.max_photons = PLACE_PHOTONS,
-                                 .max_radius = work->radius,
-                                 .shape = GATHER_DISK,
-                                 .normal_cosine = PHOTON_COSINE,
-                                 .side = disk.is_inside ? GATHER_INSIDE : GATHER_OUTSIDE};
     const uint32_t *index;
     double radius2;
     v3_frame(disk.n, &disk.s, &disk.t);
-    int count = photon_nearest(work->photons, disk.p, disk.n, &limits, scratch, &index, &radius2);
+    int count = find_photons(work->photons, place, disk.p, work->radius, scratch, &index, &radius2);
     disk.radius = sqrt(radius2);
     Rgb irradiance = RGB_BLACK;
     uint16_t flags = 0;
@@ -317,7 +328,8 @@ static int facing_of(V3 n)
 }
 
 /* Build the trees; `places` is freed. */
-static Status build(const PlaceWork *work, int threads, Diag *diag, IrradianceMap *map)
+static Status build(const PlaceWork *work, const IrradianceOptions *options, Diag *diag,
+                    IrradianceMap *map)
 {
     Status status = OK;
     for (int way = 0; way < FACINGS && status == OK; way++) {
@@ -333,9 +345,13 @@ static Status build(const PlaceWork *work, int threads, Diag *diag, IrradianceMa
             if (facing_of(normal14_decode(work->places[i].flags >> 2)) == way)
                 part[used++] = work->places[i];
         if (part)
-            status = photon_map_new(diag, part, count, photon_map_center(work->photons), threads,
-                                    &map->places[way]);
+            status = photon_map_new(diag, part, count, photon_map_center(work->photons),
+                                    options->threads, &map->places[way]);
+        if (status == OK && options->is_watched)
+            status = photon_map_watch(diag, map->places[way]);
     }
+    map->photons = work->photons;
+    map->radius = work->radius;
     for (size_t i = 0; i < work->count; i++)
         map->reach = fmax(map->reach, PLACE_REACH * radius_decode(&work->places[i]));
     return status;
@@ -356,7 +372,7 @@ Status irradiance_map_new(const Tracer *tracer, const PhotonMap *photons, Photon
     IrradianceMap *map = mem_alloc(sizeof *map);
     Status status = map ? estimate_all(&work, options, diag) : diag_no_memory(diag, "irradiance");
     if (status == OK)
-        status = build(&work, options->threads, diag, map);
+        status = build(&work, options, diag, map);
     mem_free(places);
     if (status == OK)
         *out = map;
@@ -372,9 +388,34 @@ void irradiance_map_free(IrradianceMap *map)
     mem_free(map);
 }
 
+Status irradiance_map_see(const IrradianceMap *map, Diag *diag)
+{
+    GatherScratch *scratch = gather_scratch_new();
+    if (!scratch)
+        return diag_no_memory(diag, "photons seen");
+    for (int way = 0; way < FACINGS; way++) {
+        const PhotonMap *places = map->places[way];
+        for (size_t i = 0; places && i < photon_map_count(places); i++) {
+            if (!photon_map_is_seen(places, i))
+                continue;
+            const uint32_t *index;
+            double radius2;
+            Photon place = photon_map_at(places, i);
+            int count = find_photons(map->photons, &place, photon_place(places, &place),
+                                     map->radius, scratch, &index, &radius2);
+            for (int k = 0; k < count; k++)
+                photon_map_see(map->photons, index[k]);
+        }
+    }
+    gather_scratch_free(scratch);
+    return OK;
+}
+
 /* --- looking up --------------------------------------------------------------------------- */
 
 typedef struct NearPlace {
+    const PhotonMap *map;
+    uint32_t index; /* in it */
     Photon place;
     V3 p;
     double radius;
@@ -396,7 +437,7 @@ static int sort_places(const PhotonMap *map, const uint32_t *index, int count, V
                        NearPlace *out, int sorted)
 {
     for (int i = 0; i < count; i++) {
-        NearPlace near = {.place = photon_map_at(map, index[i])};
+        NearPlace near = {.map = map, .index = index[i], .place = photon_map_at(map, index[i])};
         near.p = photon_place(map, &near.place);
         near.radius = radius_decode(&near.place);
         near.distance2 = photon_distance2(map, &near.place, p, n);
@@ -464,6 +505,7 @@ Rgb irradiance_at(const IrradianceMap *map, TraceThread *thread, GatherScratch *
         if ((place->flags & FLAG_CLUTTERED) && !is_clear(thread, own, other))
             continue;
         *radius = near[i].radius;
+        photon_map_see(near[i].map, near[i].index);
         return rgbe_decode(place->rgbe);
     }
     return RGB_BLACK;

@@ -16,6 +16,7 @@ typedef struct IrradianceOptions {
     int threads;
     double radius; /* of searches in the photon map, scene units */
     Stats *stats;  /* counters are added there */
+    bool is_watched; /* the photons are: keep which places are looked up */
 } IrradianceOptions;
 
 /* Estimate the irradiance at places.  Takes ownership of `places` (their powers and directions do
@@ -25,6 +26,9 @@ Status irradiance_map_new(const Tracer *tracer, const PhotonMap *photons, Photon
                           size_t count, const IrradianceOptions *options, Diag *diag,
                           IrradianceMap **out);
 void irradiance_map_free(IrradianceMap *map);
+
+/* Of a watched map: note as seen all photons that speak at places which were looked up. */
+Status irradiance_map_see(const IrradianceMap *map, Diag *diag);
 
 struct GatherScratch;
 

@@ -277,8 +277,16 @@ static Status map_fill(Build *build, size_t count, int threads)
                     build);
 }
 
+static Status keep_order(const Key *keys, size_t count, uint32_t **order)
+{
+    *order = mem_array(count + 1, sizeof **order);
+    for (size_t i = 0; *order && i < count; i++)
+        (*order)[i] = keys[i].index;
+    return *order ? OK : ERR_MEMORY;
+}
+
 Status photon_map_new_full(Diag *diag, Photon *photons, PhotonLight *lights, size_t count,
-                           V3 center, int threads, PhotonMap **out)
+                           V3 center, int threads, uint32_t **order, PhotonMap **out)
 {
     *out = NULL;
     PhotonMap *map = mem_alloc(sizeof *map);
@@ -289,6 +297,8 @@ Status photon_map_new_full(Diag *diag, Photon *photons, PhotonLight *lights, siz
         Build build = {map, photons, lights, keys};
         status = map_fill(&build, count, threads);
     }
+    if (status == OK && order)
+        status = keep_order(keys, map->count, order);
     mem_free(keys);
     mem_free(lights);
     mem_free(photons);
@@ -303,7 +313,7 @@ Status photon_map_new_full(Diag *diag, Photon *photons, PhotonLight *lights, siz
 Status photon_map_new(Diag *diag, Photon *photons, size_t count, V3 center, int threads,
                       PhotonMap **out)
 {
-    return photon_map_new_full(diag, photons, NULL, count, center, threads, out);
+    return photon_map_new_full(diag, photons, NULL, count, center, threads, NULL, out);
 }
 
 void photon_map_free(PhotonMap *map)
@@ -313,7 +323,25 @@ void photon_map_free(PhotonMap *map)
     mem_free(map->splits);
     mem_free(map->memory);
     mem_free(map->lights);
+    mem_free((void *)(uintptr_t)map->seen);
     mem_free(map);
+}
+
+Status photon_map_watch(Diag *diag, PhotonMap *map)
+{
+    map->seen = mem_array(map->count + 1, sizeof *map->seen);
+    return map->seen ? OK : diag_no_memory(diag, "photons seen");
+}
+
+void photon_map_see(const PhotonMap *map, size_t index)
+{
+    if (map->seen)
+        atomic_store_explicit(&map->seen[index], 1, memory_order_relaxed);
+}
+
+bool photon_map_is_seen(const PhotonMap *map, size_t index)
+{
+    return map->seen && atomic_load_explicit(&map->seen[index], memory_order_relaxed);
 }
 
 size_t photon_map_count(const PhotonMap *map)

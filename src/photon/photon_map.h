@@ -21,10 +21,21 @@ typedef struct PhotonMap PhotonMap;
  * O(n log n); needs another 37 bytes a photon while it runs. */
 Status photon_map_new(Diag *diag, Photon *photons, size_t count, V3 center, int threads,
                       PhotonMap **out);
-/* The same with the light of the photons in full precision, `lights` beside `photons`; takes
- * ownership of both.  Estimates then read that; 24 bytes a photon more. */
+/* The same, with what is kept on demand.
+ *
+ * lights  of the photons in full precision, or NULL; takes ownership.  Estimates then read that; 24
+ *         bytes a photon more.
+ * order   NULL, or set to the number that each photon of the map had in `photons`; the caller
+ *         frees it with mem_free, also after a failure. */
 Status photon_map_new_full(Diag *diag, Photon *photons, PhotonLight *lights, size_t count,
-                           V3 center, int threads, PhotonMap **out);
+                           V3 center, int threads, uint32_t **order, PhotonMap **out);
+
+/* Make a map keep which of its photons are seen, while no other thread uses it; 1 byte a photon
+ * more.  ERR_MEMORY or OK. */
+Status photon_map_watch(Diag *diag, PhotonMap *map);
+/* Note that photon `index` of a watched map was seen; of others it does nothing.  Any thread. */
+void photon_map_see(const PhotonMap *map, size_t index);
+bool photon_map_is_seen(const PhotonMap *map, size_t index);
 void photon_map_free(PhotonMap *map);
 size_t photon_map_count(const PhotonMap *map);
 /* Return all the memory the map holds, bytes. */

@@ -4,6 +4,7 @@
 
 #include "photon/photon_map.h"
 
+#include <stdatomic.h>
 #include <string.h>
 
 enum { BLOCK_PHOTONS = 16 };
@@ -33,6 +34,7 @@ struct PhotonMap {
     uint32_t level_blocks; /* largest power of two not above block_count */
     V3 center;
     void *memory;        /* of blocks */
+    _Atomic uint8_t *seen; /* of each photon; NULL: not watched */
     PhotonLight *lights; /* of each photon of the blocks in turn; NULL: 20 bytes are all */
 };
 

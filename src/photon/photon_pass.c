@@ -5,6 +5,7 @@
 #include "base/mem.h"
 #include "photon/emission_int.h"
 #include "photon/gather.h"
+#include "photon/origins_int.h"
 
 #include <string.h>
 
@@ -80,8 +81,9 @@ static bool make_room(PhotonList *list, size_t more)
     return lights;
 }
 
-/* Send the photons of a kind and add them to `photons`. */
-static Status emit(Emission *emission, MapKind kind, Stats *stats, PhotonList *photons)
+/* Send the photons of a kind and add them to `photons`; from: note their sources, or NULL. */
+static Status emit(Emission *emission, MapKind kind, Stats *stats, PhotonList *photons,
+                   PhotonOrigins *from)
 {
     if (emission->budget == 0) {
         if (emission->source_count > 0) /* media that glow send no photons */
@@ -97,6 +99,12 @@ static Status emit(Emission *emission, MapKind kind, Stats *stats, PhotonList *p
     if (status != OK)
         return status;
     count_paths(emission->books, emission->source_count, kind, stats);
+    if (from && status == OK)
+        status = origins_note(from, emission->books, emission->source_count, emission->diag);
+    if (status != OK) {
+        photon_list_free(&sent);
+        return status;
+    }
     if (sent.count == 0)
         warn_of_none(emission, kind, "no photon was stored");
     if (photons->count == 0) {
@@ -112,16 +120,19 @@ static Status emit(Emission *emission, MapKind kind, Stats *stats, PhotonList *p
 }
 
 /* Make the map of what was sent; *map stays NULL when that is nothing. */
-static Status build(const Emission *emission, Stats *stats, PhotonList *photons, PhotonMap **map)
+static Status build(const Emission *emission, Stats *stats, PhotonList *photons,
+                    PhotonOrigins *from, PhotonMap **map)
 {
     double started = clock_wall();
     Status status = OK;
     if (photons->count > 0)
-        status =
-            photon_map_new_full(emission->diag, photons->items, photons->lights, photons->count,
-                                emission->rules.center, emission->options->threads, map);
+        status = photon_map_new_full(emission->diag, photons->items, photons->lights,
+                                     photons->count, emission->rules.center,
+                                     emission->options->threads, from ? &from->order : NULL, map);
     else
         photon_list_free(photons);
+    if (status == OK && from && *map)
+        status = photon_map_watch(emission->diag, *map);
     *photons = (PhotonList){0};
     stats->seconds[PHASE_PHOTON_BUILD] += clock_wall() - started;
     return status;
@@ -157,6 +168,7 @@ static void join_counts(LightBooks *to, const LightBooks *from)
     to->escaped += from->escaped;
     to->cut += from->cut;
     to->stored += from->stored;
+    to->seen += from->seen;
 }
 
 /* Add up the books of two kinds of photons in one map. */
@@ -204,10 +216,12 @@ static Status make_irradiance(Emission *emission, Stats *stats, PhotonMaps *maps
 {
     PhotonList places;
     double started = clock_wall();
-    int most = gather_most(&tracer_scene(emission->tracer)->settings.photons);
+    int most = miniature_photons(emission->options->miniature,
+                                 gather_most(&tracer_scene(emission->tracer)->settings.photons));
     IrradianceOptions options = {.seed = emission->options->seed,
                                  .threads = emission->options->threads,
                                  .stats = stats,
+                                 .is_watched = emission->options->is_watched,
                                  .radius = photon_map_radius(maps->global, most)};
     Status status = emission_run_places(emission, IRRADIANCE_PART, &places);
     if (status == OK && places.count == 0)
@@ -228,15 +242,19 @@ static Status make_map(const Tracer *tracer, MapKind kind, const PhotonOptions *
     PhotonMap **map = kind == MAP_CAUSTIC  ? &maps->caustic
                       : kind == MAP_GLOBAL ? &maps->global
                                            : &maps->volume;
+    PhotonOrigins *from = kind == MAP_CAUSTIC  ? &maps->caustic_from
+                          : kind == MAP_GLOBAL ? &maps->global_from
+                                               : &maps->volume_from;
+    from = options->is_watched ? from : NULL;
     stats->seconds[PHASE_PHOTON_EMIT] += clock_wall() - started;
     if (status == OK)
-        status = emit(&emission, kind, stats, photons);
+        status = emit(&emission, kind, stats, photons, from);
     if (kind == MAP_CAUSTIC)
         maps->has_no_caustics = emission.budget == 0;
     if (kind == MAP_FOCUS)
         maps->has_no_focus = emission.budget == 0;
     if (status == OK && !is_first_of_map(tracer_plan(tracer), kind))
-        status = build(&emission, stats, photons, map);
+        status = build(&emission, stats, photons, from, map);
     bool is_looked_up =
         emission.rules.keeps_first && !plan_has(tracer_plan(tracer), FEATURE_PROGRESSIVE);
     if (status == OK && kind == MAP_GLOBAL && *map && is_looked_up)
@@ -275,13 +293,13 @@ static double speck_radius(const Tracer *tracer, const PhotonMap *map, const Lig
     return lamp > 0 ? sqrt(mean / (lamp * FAINT_PHOTON * PMS_PI)) : 0;
 }
 
-static void set_radii(const Tracer *tracer, PhotonMaps *maps)
+static void set_radii(const Tracer *tracer, const Miniature *miniature, PhotonMaps *maps)
 {
     const PhotonSettings *settings = &tracer_scene(tracer)->settings.photons;
-    int most = gather_most(settings);
+    int most = miniature_photons(miniature, gather_most(settings));
     if (maps->caustic) {
-        maps->caustic_radius =
-            settings->radius > 0 ? settings->radius : photon_map_radius(maps->caustic, most);
+        maps->caustic_radius = settings->radius > 0 ? miniature_radius(miniature, settings->radius)
+                                                    : photon_map_radius(maps->caustic, most);
         maps->caustic_far = fmax(speck_radius(tracer, maps->caustic, maps->books.caustic),
                                  WIDEN * maps->caustic_radius);
     }
@@ -318,7 +336,7 @@ Status photon_pass(const Tracer *tracer, const PhotonOptions *options, Diag *dia
     if (status != OK)
         photon_maps_done(out);
     else if (!options->has_radii)
-        set_radii(tracer, out);
+        set_radii(tracer, options->miniature, out);
     return status;
 }
 
@@ -328,8 +346,25 @@ void photon_maps_done(PhotonMaps *maps)
     photon_map_free(maps->global);
     irradiance_map_free(maps->irradiance);
     photon_map_free(maps->volume);
+    origins_done(&maps->caustic_from);
+    origins_done(&maps->global_from);
+    origins_done(&maps->volume_from);
     photon_books_done(&maps->books);
     *maps = (PhotonMaps){0};
+}
+
+Status photon_maps_count_seen(PhotonMaps *maps, Diag *diag)
+{
+    PhotonBooks *books = &maps->books;
+    if (maps->irradiance)
+        TRY(irradiance_map_see(maps->irradiance, diag));
+    if (maps->caustic)
+        origins_count_seen(&maps->caustic_from, maps->caustic, books->caustic);
+    if (maps->global)
+        origins_count_seen(&maps->global_from, maps->global, books->global);
+    if (maps->volume)
+        origins_count_seen(&maps->volume_from, maps->volume, books->volume);
+    return OK;
 }
 
 Status photon_plan_budgets(const Tracer *tracer, const PhotonOptions *options, Diag *diag,

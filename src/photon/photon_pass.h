@@ -25,6 +25,7 @@ typedef struct LightBooks {
     double share; /* of the budget, 0 to 1 */
     uint64_t budget, emitted, stored_paths, absorbed, escaped, cut;
     uint64_t stored; /* photons */
+    uint64_t seen;   /* of these, that an estimate of the eye pass was made from; if watched */
     Rgb flux_emitted, flux_stored, flux_absorbed, flux_escaped, flux_cut;
     /* What the photons lost to surfaces and ways, as their reflectances say, and what the dice left
      * them, as shares of what each started with: 1 but for chance, and its standard error. */
@@ -39,6 +40,19 @@ typedef struct PhotonBooks {
     int volume_count;             /* as either, the larger that takes part */
 } PhotonBooks;
 
+/* Photons of a source, up to number `end`, in the order they were sent in. */
+typedef struct PhotonRun {
+    uint64_t end;
+    int source;
+} PhotonRun;
+
+/* Where the photons of a watched map came from. */
+typedef struct PhotonOrigins {
+    uint32_t *order; /* the number of each photon of the map in the order they were sent in */
+    PhotonRun *runs;
+    int run_count;
+} PhotonOrigins;
+
 typedef struct PhotonMaps {
     PhotonMap *caustic, *global, *volume; /* NULL: the plan does not call for it */
     IrradianceMap *irradiance;            /* for final gathering; NULL: not called for */
@@ -46,12 +60,31 @@ typedef struct PhotonMaps {
     double caustic_far, global_far;       /* how far a gather may widen that finds too little */
     bool has_no_caustics, has_no_focus;   /* no light reaches a target: for surfaces, for media */
     PhotonBooks books;
+    PhotonOrigins caustic_from, global_from, volume_from; /* if watched */
 } PhotonMaps;
+
+/* A pass for a picture in small, to see what one in full will take: with fewer photons, whose
+ * estimates reach as much further as its pixels are wider. */
+typedef struct Miniature {
+    double side;    /* of its pixels, in those of the full picture */
+    double photons; /* part of the photons that is sent */
+} Miniature;
+
+/* Return of how many photons an estimate in small is made for one of a full picture: as a part. */
+double miniature_gather(const Miniature *miniature);
+/* Return how many photons an estimate of `most` takes in small, from an area or, in media, from a
+ * ball; NULL: a full picture. */
+int miniature_photons(const Miniature *miniature, int most);
+int miniature_ball(const Miniature *miniature, int most);
+/* Return the radius of an estimate in small, whose radius in full was asked for. */
+double miniature_radius(const Miniature *miniature, double radius);
 
 typedef struct PhotonOptions {
     uint64_t seed;
     int threads;
     bool is_repeat; /* what there is to warn of was said in a pass before */
+    bool is_watched; /* keep which photons are seen, and where they came from */
+    const Miniature *miniature; /* NULL: a full picture */
     bool is_full;   /* photons keep their light in full precision beside the 20 bytes */
     bool has_radii; /* the caller knows the gather radii: they are left 0 */
     void (*progress)(void *ctx, double fraction);
@@ -77,5 +110,8 @@ void photon_books_add(PhotonBooks *to, PhotonBooks *from, uint64_t before);
 Status photon_pass(const Tracer *tracer, const PhotonOptions *options, Diag *diag, Stats *stats,
                    PhotonMaps *out);
 void photon_maps_done(PhotonMaps *maps);
+
+/* When watched maps have been used, enter into the books what was seen of them. */
+Status photon_maps_count_seen(PhotonMaps *maps, Diag *diag);
 
 #endif

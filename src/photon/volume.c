@@ -317,6 +317,7 @@ static void visit_photon(const VolumeQuery *query, const PhotonBlock *block, int
 {
     const PhotonMap *map = query->index->map;
     size_t index = lane_index(map, block, i);
+    photon_map_see(map, index);
     float away[3];
     for (int axis = 0; axis < 3; axis++)
         away[axis] = block->pos[axis][i] - query->o[axis] - along * query->d[axis];

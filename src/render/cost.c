@@ -30,6 +30,13 @@ const char *cost_unit(int cost)
     return infos[cost].unit;
 }
 
+bool cost_is_of_estimates(int cost)
+{
+    StatId counter = infos[cost].counter;
+    return counter == STAT_GATHERED || counter == STAT_GATHERED_CAUSTIC ||
+           counter == STAT_GATHERED_VOLUME;
+}
+
 void costs_find(const Plan *plan, const Stats *stats, Costs *out)
 {
     for (int i = 0; i < COST_COUNT; i++) {
@@ -47,11 +54,17 @@ static double work_of(const Costs *costs, int cost)
     return costs->count[cost] * infos[cost].weight;
 }
 
-double costs_share_of(const Costs *costs, int cost)
+double costs_work(const Costs *costs)
 {
     double all = 0;
     for (int i = 0; i < COST_COUNT; i++)
         all += work_of(costs, i);
+    return all;
+}
+
+double costs_share_of(const Costs *costs, int cost)
+{
+    double all = costs_work(costs);
     return all > 0 ? work_of(costs, cost) / all : 0;
 }
 

@@ -23,8 +23,14 @@ FeatureId cost_feature(int cost);
 /* Return what is counted: "shadow rays". */
 const char *cost_unit(int cost);
 
+/* Return true if what is counted are photons that estimates are made of. */
+bool cost_is_of_estimates(int cost);
+
 /* Find what was done for the effects of a plan in a run with these counters. */
 void costs_find(const Plan *plan, const Stats *stats, Costs *out);
+
+/* Return all the work, in the unit of the weights of cost.def. */
+double costs_work(const Costs *costs);
 
 /* Return work as a part of all: of one kind, and of an effect (FEATURE_COUNT: of any picture). */
 double costs_share_of(const Costs *costs, int cost);

@@ -42,6 +42,7 @@ PhotonOptions pass_photon_options(const RenderOptions *options, uint64_t seed)
 {
     return (PhotonOptions){.seed = seed,
                            .threads = options->threads,
+                           .is_watched = options->is_watched,
                            .is_full = options->has_full_photons,
                            .progress = options->progress ? photon_progress : NULL,
                            .progress_ctx = (void *)(uintptr_t)options};
@@ -57,8 +58,11 @@ static GatherLimits gather_limits(const Pass *pass, double radius, double far_ra
 {
     const SceneSettings *settings = &tracer_scene(pass->tracer)->settings;
     const PhotonSettings *photons = &settings->photons;
-    return (GatherLimits){.min_photons = photons->gather_min,
-                          .max_photons = gather_most(photons),
+    const Miniature *miniature = pass->options->miniature;
+    return (GatherLimits){.min_photons = photons->gather_min > 0
+                                             ? miniature_photons(miniature, photons->gather_min)
+                                             : photons->gather_min,
+                          .max_photons = miniature_photons(miniature, gather_most(photons)),
                           .max_radius = radius,
                           .far_radius = far_radius,
                           .shape = settings->pms.gather_shape,
@@ -74,7 +78,9 @@ static GatherLimits series_limits(const Pass *pass, const PhotonMap *map, double
                                   double *first)
 {
     if (*first == 0 && map)
-        *first = asked > 0 ? asked : photon_map_radius(map, SERIES_PHOTONS);
+        *first = asked > 0 ? miniature_radius(pass->options->miniature, asked)
+                           : photon_map_radius(
+                                 map, miniature_photons(pass->options->miniature, SERIES_PHOTONS));
     GatherLimits limits = gather_limits(pass, *first * pass->options->series->shrink, 0);
     limits.min_photons = limits.max_photons = 0;
     return limits;
@@ -102,16 +108,18 @@ static Status make_volume(Pass *pass)
     const PhotonMap *map = pass->maps.volume;
     const PassSeries *series = pass->options->series;
     int threads = pass->options->render->threads;
+    const Miniature *small = pass->options->miniature;
     double radius = tracer_scene(pass->tracer)->settings.photons.media_radius;
+    radius = miniature_radius(small, radius);
+    int photons = miniature_ball(small, VOLUME_PHOTONS);
     if (!map)
         return OK;
     if (series) {
         if (series->first->volume == 0)
-            series->first->volume = radius > 0 ? radius : volume_radius(map, VOLUME_PHOTONS);
+            series->first->volume = radius > 0 ? radius : volume_radius(map, photons);
         radius = series->first->volume * series->shrink;
     }
-    return volume_index_new(pass->tracer, map, VOLUME_PHOTONS, radius, threads, pass->diag,
-                            &pass->volume);
+    return volume_index_new(pass->tracer, map, photons, radius, threads, pass->diag, &pass->volume);
 }
 
 static Status make_maps(Pass *pass)
@@ -121,7 +129,8 @@ static Status make_maps(Pass *pass)
     const PassSeries *series = pass->options->series;
     PhotonOptions options = pass_photon_options(pass->options->render, pass->options->photon_seed);
     options.has_radii = series != NULL;
-    options.is_repeat = series && series->is_repeat;
+    options.is_repeat = (series && series->is_repeat) || pass->options->miniature;
+    options.miniature = pass->options->miniature;
     TRY(photon_pass(pass->tracer, &options, pass->diag, pass->stats, &pass->maps));
     set_limits(pass);
     TRY(make_volume(pass));
@@ -200,9 +209,14 @@ Status pass_render(const Tracer *tracer, const PassOptions *options, Diag *diag,
                  .stats = stats,
                  .has_error = film->has_clues};
     *out = (PassResult){0};
+    Stats before = *stats;
     Status status = make_maps(&pass);
+    for (int i = 0; i < STAT_COUNT; i++)
+        out->photon_stats.count[i] = stats->count[i] - before.count[i];
     if (status == OK)
         status = fill_film(&pass, film);
+    if (status == OK && options->render->is_watched)
+        status = photon_maps_count_seen(&pass.maps, diag);
     if (status == OK) {
         out->caustic_hash = map_hash(pass.maps.caustic);
         out->global_hash = map_hash(pass.maps.global);

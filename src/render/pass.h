@@ -18,11 +18,13 @@ typedef struct PassOptions {
     const RenderOptions *render;
     uint64_t photon_seed;
     const PassSeries *series; /* NULL: the only pass */
+    const Miniature *miniature; /* NULL: a full picture */
 } PassOptions;
 
 /* What a pass leaves beside the picture.  Free with pass_result_done. */
 typedef struct PassResult {
     PhotonBooks books;
+    Stats photon_stats; /* of the counters those of the photon maps */
     PassRadii radii; /* of a pass that is the only one */
     uint64_t caustic_hash, global_hash, volume_hash; /* of the photon maps' bytes, 0: no map */
 } PassResult;

@@ -213,7 +213,7 @@ static Status run_pass(Series *s)
     PassSeries series = {.shrink = progressive_shrink(number + 1),
                          .is_repeat = s->out->new_passes > 0,
                          .first = &s->first};
-    PassOptions pass = {&s->options, rng_u64(&seed), &series};
+    PassOptions pass = {&s->options, rng_u64(&seed), &series, NULL};
     s->options.seed = half_seed(s, number % 2);
     film_sum_follow(half, &s->film);
     TRY(pass_render(s->tracer, &pass, s->diag, &s->out->stats, &s->film, &result));

@@ -3,6 +3,7 @@
 
 #include "base/work.h"
 #include "render/error_map.h"
+#include "render/forecast.h"
 #include "render/pass.h"
 #include "render/progressive.h"
 
@@ -135,22 +136,18 @@ void render_result_done(RenderResult *result)
     photon_books_done(&result->books);
 }
 
-Status render_explain(const Scene *scene, const RenderOptions *options, Diag *diag, Arena *arena,
-                      Plan *plan, PhotonBooks *books)
+Status render_forecast(const Scene *scene, const RenderOptions *options, Diag *diag, Arena *arena,
+                       Plan *plan, Forecast *out)
 {
-    *books = (PhotonBooks){0};
+    Tracer *tracer = NULL;
+    *out = (Forecast){0};
+    TRY(check_options(options, diag));
     if (plan_make(scene, &options->plan, arena, plan) != OK)
         return diag_no_memory(diag, "the plan");
     TRY(plan_check(plan, diag));
-    if (!pass_needs_photons(plan))
-        return OK;
-    Tracer *tracer = NULL;
     Status status = tracer_new(scene, plan, options->threads, diag, &tracer);
-    if (status == OK) {
-        PhotonOptions photons = pass_photon_options(options, options->seed);
-        photons.progress = NULL;
-        status = photon_plan_budgets(tracer, &photons, diag, books);
-    }
+    if (status == OK)
+        status = forecast_make(tracer, options, diag, out);
     tracer_free(tracer);
     return status;
 }

@@ -63,6 +63,7 @@ typedef struct RenderOptions {
     double aa_jitter;        /* amount, 0 to 1 */
     int samples;             /* a pixel, of AA_UNIFORM */
     unsigned layers;         /* LayerBits */
+    bool is_watched;         /* books say which photons were seen */
     bool has_alpha;          /* background transparent (+UA) */
     bool has_full_photons;   /* photons keep their light in full precision: see PhotonOptions */
     bool has_error_picture;  /* a picture of the errors is asked for */
@@ -96,9 +97,5 @@ struct RenderResult {
 Status render_scene(const Scene *scene, const RenderOptions *options, Diag *diag,
                     RenderResult *out);
 void render_result_done(RenderResult *result);
-
-/* The plan and the photon budgets, without rendering: what `explain` prints. */
-Status render_explain(const Scene *scene, const RenderOptions *options, Diag *diag,
-                      Arena *arena, Plan *plan, PhotonBooks *books);
 
 #endif

@@ -35,6 +35,6 @@ for glass in bk7:sellmeier f2:sellmeier sf10:sellmeier sf11:sellmeier silica:sel
     fi
 done
 run "$PMS" explain "$T/bk7.pov" -L "$ROOT/stdlib"
-grep -q "^dispersion  *yes  an interior with sellmeier in pms{}, seen in 3 bands" "$T/out"
+grep -q "^dispersion  *an interior with sellmeier in pms{}, seen in 3 bands" "$T/out"
 ok $? "explain says who asked for dispersion"
 plan

@@ -18,16 +18,16 @@ fails 2 "--integrator wants photons or path, got 'paths'" "unknown integrator" \
 fails 2 "--light-radius wants a number from 0" "negative radius" \
     "$PMS" --integrator=path --light-radius=-1 "$T/s.pms"
 
-run "$PMS" explain --integrator=path "$T/s.pms"
-[ "$code" -eq 0 ] && grep -qE "^path_tracing +yes" "$T/out" &&
-    grep -qE "^caustic_map +no +path tracing finds that light itself" "$T/out" &&
-    grep -qE "^path_caustics +yes .*MISSING are those of 1 without" "$T/out" && grep -q "no photon pass" "$T/out"
+run "$PMS" explain --integrator=path "$T/s.pms" --all
+[ "$code" -eq 0 ] && grep -qE "^path_tracing +asked for" "$T/out" &&
+    grep -qE "^caustic_map +path tracing finds that light itself" "$T/out" &&
+    grep -qE "^path_caustics .*MISSING are those of 1 without" "$T/out" && grep -q "no photon pass" "$T/out"
 ok $? "explain: no maps, and whose caustics are missing"
 run "$PMS" explain --integrator=path --light-radius=0.1 "$T/s.pms"
-[ "$code" -eq 0 ] && grep -qE "^path_caustics +yes +lights with a size: 2" "$T/out"
+[ "$code" -eq 0 ] && grep -qE "^path_caustics +lights with a size: 2" "$T/out"
 ok $? "explain: with a radius none are"
 run "$PMS" explain --integrator=photons "$T/s.pms"
-[ "$code" -eq 0 ] && grep -qE "^path_tracing +no" "$T/out" && grep -qE "^caustic_map +yes" "$T/out"
+[ "$code" -eq 0 ] && grep -q " path_tracing," "$T/out" && grep -qE "^caustic_map +photons" "$T/out"
 ok $? "explain: photons are the default"
 
 for threads in 1 3; do

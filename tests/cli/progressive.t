@@ -136,6 +136,6 @@ done
 fails 2 "\+A has no meaning" "+A" $P +A0.1 -o "$T/a.exr"
 run "$PMS" explain "$T/s.pms" --progressive --passes=100 --time=2m
 [ "$code" -eq 0 ] && grep -q "^passes: 100, or what fits into 120 s; 1 sample a pixel in each, and these photons; the last gather radius is 0.488 of the first" "$T/out" &&
-    grep -qE "^progressive +yes" "$T/out"
+    grep -qE "^progressive +asked for on the command line" "$T/out"
 ok $? "explain tells of passes"
 plan
