@@ -63,6 +63,10 @@ static const char *option_text(const Option *option, int command)
         return "put the report into the folder FILE (SCENE.study)";
     if (option == &options[OPT_TIME] && command == CMD_STUDY)
         return "spend no more than T on all of the study: 90s, 5m, 1.5h (10m)";
+    if (option == &options[OPT_WIDTH] && command == CMD_SELFTEST)
+        return "width of the picture of SCENE in pixels (160)";
+    if (option == &options[OPT_HEIGHT] && command == CMD_SELFTEST)
+        return "height of that picture in pixels (by the shape of the camera)";
     return option->text;
 }
 

@@ -28,6 +28,10 @@ static const char scene_text[] =
     "union { box { 0, 1 } difference { sphere { 0, 1 } plane { y, 0 } } rotate 30*y }\n"
     "mesh { triangle { 0, x, y } triangle { 0, x, z } pigment { rgb 1 } }\n"
     "light_source { 10*y rgb 1 area_light x, z, 3, 3 }\n"
+    "media { absorption 0.1 density { gradient x } } fog { distance 9 rgb 1 }\n"
+    "rainbow { direction z angle 40 width 5 color_map { [0 rgb 1] [1 rgb 0] } }\n"
+    "sky_sphere { pigment { gradient y color_map { [0 rgb 1] [1 rgb 0] } } }\n"
+    "sphere { 0, 1 hollow interior { fade_distance 2 media { emission 1 } } }\n"
     "camera { location -5*z look_at 0 }\n";
 
 static void drop(void *ctx, const char *text)
@@ -36,9 +40,9 @@ static void drop(void *ctx, const char *text)
     (void)text;
 }
 
-static Status load_with_fault(long n)
+static Status load_with_fault(long n, const Similarity *by)
 {
-    SdlOptions options = {.width = 32, .height = 24, .threads = 1};
+    SdlOptions options = {.width = 32, .height = 24, .threads = 1, .moved_by = by};
     Diag diag;
     Scene *scene;
     diag_init(&diag, drop, NULL);
@@ -53,24 +57,38 @@ static Status load_with_fault(long n)
     return status;
 }
 
-static void test_every_allocation(void **state)
+static void fail_each(const Similarity *by)
 {
-    (void)state;
-    assert_int_equal(load_with_fault(0), OK);
+    assert_int_equal(load_with_fault(0, by), OK);
     long n = 1;
     Status status = ERR_MEMORY;
     for (; n < TRIES_MAX && status != OK; n++) {
-        status = load_with_fault(n);
+        status = load_with_fault(n, by);
         assert_true(status == OK || status == ERR_MEMORY);
     }
     assert_int_equal(status, OK);
     assert_true(n > 5);
 }
 
+static void test_every_allocation(void **state)
+{
+    (void)state;
+    fail_each(NULL);
+}
+
+static void test_every_allocation_moved(void **state)
+{
+    (void)state;
+    const Xform turn = xform_rotate(v3(1, 2, 3));
+    const Similarity by = similarity_make(&turn, 3, v3(4, 5, 6));
+    fail_each(&by);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_allocation),
+        cmocka_unit_test(test_every_allocation_moved),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
