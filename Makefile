@@ -47,7 +47,7 @@ ALLCFLAGS := -std=c17 -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 $(BASEFLAGS)
 ALLCXXFLAGS := -std=c++17 $(BASEFLAGS) $(WARN) $(CXXFLAGS)
 LIBS     := $(PKGLIB) -lm -lstdc++ -lpthread
 
-.PHONY: all help deps demo check check-all check-kill parity bench fuzz gallery floors headers install uninstall clean
+.PHONY: all help deps demo check check-all check-kill check-study parity bench fuzz gallery floors headers install uninstall clean
 .DEFAULT_GOAL := all
 .SECONDARY:
 
@@ -85,6 +85,12 @@ check-all: deps ## the tests under sanitizers, and the long ones
 check-kill: deps ## kill progressive renders 20 times at random moments, and resume them
 	$(Q)$(MAKE) --no-print-directory $(B)/pms
 	$(Q)KILLS=20 PMS=$(B)/pms prove -v tests/cli/kill.t
+
+check-study: deps ## show the page of a study in a browser (installs chromium); out/study.png
+	$(Q)tests/house/deps.sh $(PACKAGES) chromium
+	$(Q)$(MAKE) --no-print-directory $(B)/pms
+	$(Q)mkdir -p out
+	$(Q)SHOT=out/study.png PMS=$(B)/pms prove -v tests/cli/study_page.t
 
 check-physics: deps ## print what the tests of light measure, what is expected, and the error
 	$(Q)$(MAKE) --no-print-directory check-physics-built

@@ -53,10 +53,10 @@ static void find_errors(const StudyRun *runs, double noise, StudyRow *row)
 
 static void add_run(const StudyRun *run, StudyRow *row)
 {
-    row->seeds++;
-    row->seconds += run->seconds;
-    for (int i = 0; i < PHASE_COUNT; i++)
-        row->phase[i] += run->phase[i];
+    if (row->seeds++ == 0 || run->seconds < row->seconds) {
+        row->seconds = run->seconds;
+        memcpy(row->phase, run->phase, sizeof row->phase);
+    }
     row->rmse += run->error.square;
     row->rel_mse += run->error.rel_square;
     row->flip += run->error.flip;
@@ -74,9 +74,6 @@ static bool make_row(const StudyPoint *point, const StudyRun *runs, double noise
     if (row->seeds == 0)
         return false;
     double scale = 1.0 / row->seeds;
-    row->seconds *= scale;
-    for (int i = 0; i < PHASE_COUNT; i++)
-        row->phase[i] *= scale;
     row->rmse = sqrt(fmax(0, row->rmse * scale));
     row->rel_mse = fmax(0, row->rel_mse * scale);
     row->flip *= scale;

@@ -11,7 +11,7 @@ enum { STUDY_SEEDS = 3, STUDY_TARGETS = 3 };
 typedef struct StudyRow {
     const StudyPoint *point;
     int seeds;               /* of how many runs */
-    double seconds, phase[PHASE_COUNT];
+    double seconds, phase[PHASE_COUNT]; /* of the fastest run: the least disturbed */
     double error;            /* relative, of ERROR_PERCENTILE of the pixels, less the noise of
                                 the reference; NaN: too small to tell from it */
     double rmse, rel_mse, flip;

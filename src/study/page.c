@@ -151,13 +151,12 @@ static void put_advice_row(const Page *page, const StudyAdvice *advice)
     char basis[160];
     report_basis(page->study, advice, basis);
     put_percent(page, "<tr><td class=\"b\">", advice->target, "</td><td class=\"n\">");
-    if (advice->kind == ADVICE_NONE)
-        fputs("&ndash;</td><td><span class=\"no\">out of reach of what was tried</span>",
-              page->file);
-    else {
-        put_time(page, "", advice->seconds, "</td><td>");
-        put_how(page, advice->how);
+    if (advice->kind == ADVICE_NONE) {
+        put(page, "&ndash;</td><td colspan=\"2\" class=\"no\">", basis, "</td></tr>\n");
+        return;
     }
+    put_time(page, "", advice->seconds, "</td><td>");
+    put_how(page, advice->how);
     put(page, "</td><td class=\"quiet\">", basis, "</td></tr>\n");
 }
 
@@ -174,9 +173,9 @@ static void put_advice(const Page *page)
 
 /* --- plots ---------------------------------------------------------------------------------- */
 
-static void put_plot(const Page *page, const char *svg)
+static void put_plot(const Page *page, const char *svg, int width)
 {
-    fputs("<figure>\n", page->file);
+    fprintf(page->file, "<figure style=\"max-width:%dpx\">\n", width);
     fputs(svg, page->file);
     fputs("</figure>\n", page->file);
 }
@@ -192,7 +191,7 @@ static void put_main_plot(const Page *page)
           "that falls by half while the time doubles has slope &minus;1. Dotted lines are the "
           "fits.</p>\n",
           page->file);
-    put_plot(page, page->plots.main);
+    put_plot(page, page->plots.main, 1100);
 }
 
 static void put_panels(const Page *page)
@@ -202,7 +201,7 @@ static void put_panels(const Page *page)
     fputs("<p>The same by value. The ring is the scene&rsquo;s own value; bars are the spread over "
           "seeds, where there is more than one.</p>\n",
           page->file);
-    put_plot(page, page->plots.settings);
+    put_plot(page, page->plots.settings, 1100);
 }
 
 /* --- the front ------------------------------------------------------------------------------ */
@@ -295,7 +294,7 @@ static void put_estimate(const Page *page)
         fputs("<p>What the program itself says its error is, beside what it is. Points between the "
               "broken lines are within 0.7 and 1.5 times the truth.</p>\n",
               page->file);
-        put_plot(page, page->plots.estimate);
+        put_plot(page, page->plots.estimate, 660);
     } else {
         fputs("<p class=\"quiet\">The renders of this study came without an estimate of their "
               "error.</p>\n",
@@ -319,11 +318,13 @@ static void put_reference(const Page *page)
                 "its own noise is <b>",
                 truth->noise.percentile,
                 "</b>, in the measure used here, and was taken off every error, as squares are. ");
-    if (!isnan(truth->rel_blur2))
+    if (truth->rel_blur2 > 0)
         put_percent(page, "What the halves have in common cannot be seen so: a blur of about <b>",
                     sqrt(truth->rel_blur2), "</b> in the root of the mean square. ");
-    else
+    else if (isnan(truth->rel_blur2))
         fputs("What they have in common, the last of the blur, is not known. ", page->file);
+    else
+        fputs("What they have in common, the last of the blur, is too small to tell. ", page->file);
     fprintf(page->file, "FLIP has that noise in it: %.3f.</p>\n", truth->noise.flip);
 }
 

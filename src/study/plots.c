@@ -219,8 +219,7 @@ static void plot_main(const Script *s)
     set_axis(s, 'x', seconds_range(s), "");
     set_axis(s, 'y', error_range(s), " %%");
     fputs("set title 'What each setting costs and buys' font ',17'\n"
-          "set xlabel 'time of a render (seconds)'\nset ylabel 'error (95 %% of the pixels are "
-          "below)'\n"
+          "set xlabel 'time of a render (seconds)'\nset ylabel 'error of 95 % of the pixels'\n"
           "set key at screen 0.74, screen 0.91 left top vertical Left reverse samplen 2 spacing "
           "1.3 font ',13'\n"
           "set lmargin at screen 0.085\nset rmargin at screen 0.72\n"
@@ -320,7 +319,7 @@ static void plot_estimate(const Script *s)
     set_axis(s, 'y', error_range(s), " %%");
     fputs("set title 'How good the estimate was' font ',17'\n"
           "set xlabel 'true error'\nset ylabel 'estimated error'\n"
-          "set key left top\n"
+          "set key left top Left reverse\n"
           "plot x with lines lc rgb '#888888' lw 1.5 title 'estimate = truth', \\\n"
           "  0.7*x with lines lc rgb '#bbbbbb' dt 2 title '0.7 and 1.5 times the truth', \\\n"
           "  1.5*x with lines lc rgb '#bbbbbb' dt 2 notitle, \\\n"

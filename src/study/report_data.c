@@ -53,6 +53,18 @@ void report_halving(const StudyTrend *trend, char out[48])
         snprintf(out, 48, "%.*f times the time", trend->halving < 20 ? 1 : 0, trend->halving);
 }
 
+/* Return true if it is known how a way to render goes on. */
+static bool has_known_way(const Study *study)
+{
+    const StudyAnalysis *all = &study->analysis;
+    for (int i = 0; i < all->trend_count; i++) {
+        const StudyTrend *trend = &all->trends[i];
+        if (setting_kind((SettingId)trend->setting) == SETTING_WAYS && isfinite(trend->halving))
+            return true;
+    }
+    return false;
+}
+
 void report_basis(const Study *study, const StudyAdvice *advice, char out[160])
 {
     const StudyRow *row = &study->analysis.rows[advice->row];
@@ -64,7 +76,8 @@ void report_basis(const Study *study, const StudyAdvice *advice, char out[160])
         snprintf(out, 160, "extrapolated from %s at %s, where it was %s",
                  setting_name((SettingId)row->point->setting), row->point->label, error);
     else
-        snprintf(out, 160, "out of reach: the best measured is %s", error);
+        snprintf(out, 160, "%s: the best measured is %s",
+                 has_known_way(study) ? "out of reach" : "not reached in this time", error);
 }
 
 /* --- CSV ------------------------------------------------------------------------------------ */

@@ -8,6 +8,9 @@
 #define SEED_WEIGHT 2
 #define SEED_WEIGHT_COARSE 16
 
+/* Ways to render are what is recommended in the end: they come as if they cost less. */
+#define WAY_WEIGHT 0.5
+
 /* Return the seconds of the scene as it stands times what a point is taken to cost more. */
 static double model_cost(const Study *study, const StudyPoint *point)
 {
@@ -88,6 +91,11 @@ static bool is_coarse(const Study *study, int point)
     return false;
 }
 
+static bool is_way(const StudyPoint *point)
+{
+    return point->setting != SETTING_OWN && setting_kind((SettingId)point->setting) == SETTING_WAYS;
+}
+
 int schedule_next(const Study *study)
 {
     int best = -1;
@@ -98,6 +106,8 @@ int schedule_next(const Study *study)
             continue;
         double weight = is_coarse(study, point) ? SEED_WEIGHT_COARSE : SEED_WEIGHT;
         double score = schedule_cost(study, point) * (1 + weight * seed);
+        if (is_way(&study->points[point]))
+            score *= WAY_WEIGHT;
         if (seed == 0 && !study->points[point].is_fine && is_first_of_setting(study, point))
             score -= 1e9; /* before all others, the cheapest first */
         if (score < least) {

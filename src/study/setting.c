@@ -98,6 +98,20 @@ static Status level_set(const StudyBase *base, double value, StudyPoint *point)
     return OK;
 }
 
+static double bailout_own(const StudyBase *base)
+{
+    double own = base->scene->settings.adc_bailout;
+    return !isnan(level_own(base)) && own > 0 ? own : NAN;
+}
+
+static Status bailout_set(const StudyBase *base, double value, StudyPoint *point)
+{
+    (void)base;
+    point->scene.settings.adc_bailout = value;
+    say(point, "global_settings { adc_bailout %.3g }", value);
+    return OK;
+}
+
 /* --- caustics ---------------------------------------------------------------------------- */
 
 static double photons_own(const StudyBase *base)
@@ -339,6 +353,21 @@ static Status media_set(const StudyBase *base, double value, StudyPoint *point)
 
 /* --- ways to render ---------------------------------------------------------------------- */
 
+/* What is cut off does not become better with more samples or photons: ways that are to come as
+ * near as one likes cut off less. */
+static void raise_limits(const StudyBase *base, StudyPoint *point)
+{
+    enum { LEVEL_TIMES = 2, LEVEL_MOST = 256, BAILOUT_PARTS = 4 };
+    const double cost = 1.3; /* about */
+    SceneSettings *own = &point->scene.settings;
+    if (isnan(level_own(base)))
+        return;
+    own->max_trace_level = (int)fmin(LEVEL_MOST, LEVEL_TIMES * own->max_trace_level);
+    own->adc_bailout /= BAILOUT_PARTS;
+    point->eye_cost *= cost;
+    say(point, " max_trace_level %d adc_bailout %.3g", own->max_trace_level, own->adc_bailout);
+}
+
 static double balanced_own(const StudyBase *base)
 {
     return has_photons(base) ? 1 : NAN;
@@ -393,8 +422,19 @@ static Status balanced_set(const StudyBase *base, double value, StudyPoint *poin
         raise_aimed(times, point);
     if (has(base, FEATURE_GLOBAL_MAP))
         raise_indirect(base, times, point);
+    raise_limits(base, point);
     say(point, " }");
     return OK;
+}
+
+/* The limits where they are all that is set in the scene. */
+static void say_limits(const StudyBase *base, StudyPoint *point)
+{
+    if (isnan(level_own(base)))
+        return;
+    say(point, " and global_settings {");
+    raise_limits(base, point);
+    say(point, " }");
 }
 
 static double passes_own(const StudyBase *base)
@@ -412,6 +452,7 @@ static Status passes_set(const StudyBase *base, double value, StudyPoint *point)
     point->photon_cost *= value;
     point->eye_cost *= value / samples_own(base);
     say(point, "--progressive --passes %.0f", value);
+    say_limits(base, point);
     return OK;
 }
 
@@ -425,6 +466,7 @@ static Status paths_set(const StudyBase *base, double value, StudyPoint *point)
     TRY(samples_set(base, value, point));
     point->options.plan.integrator = INTEGRATOR_PATH;
     say(point, " --integrator path");
+    say_limits(base, point);
     return OK;
 }
 
@@ -463,7 +505,7 @@ double setting_own(SettingId id, const StudyBase *base)
 static bool is_whole(SettingId id)
 {
     return id != SETTING_SPACING && id != SETTING_RADIUS && id != SETTING_CACHE &&
-           id != SETTING_MEDIA;
+           id != SETTING_MEDIA && id != SETTING_BAILOUT;
 }
 
 int setting_values(SettingId id, const StudyBase *base, double out[SETTING_VALUES_MAX])

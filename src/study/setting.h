@@ -26,7 +26,7 @@ typedef enum SettingKind {
     SETTING_WAYS    /* another way to render, of which the scene has no value: as they stand */
 } SettingKind;
 
-enum { SETTING_VALUES_MAX = 8, SETTING_LABEL_MAX = 48, SETTING_HOW_MAX = 192 };
+enum { SETTING_VALUES_MAX = 8, SETTING_LABEL_MAX = 48, SETTING_HOW_MAX = 256 };
 
 /* What a study starts from. */
 typedef struct StudyBase {

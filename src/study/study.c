@@ -18,7 +18,7 @@
 #include <sys/stat.h>
 
 /* The part of the time that the reference may take. */
-#define REFERENCE_PART 0.35
+#define REFERENCE_PART 0.3
 
 /* The reference is good enough when its noise is this part of the error of the scene as it stands:
  * the best pictures of a study have a tenth of that error. */
