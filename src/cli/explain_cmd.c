@@ -1,6 +1,7 @@
 /* pms explain: which effects a scene calls for, who asked, what they cost, and what each light
  * gets.  SPDX-License-Identifier: Apache-2.0 */
 #include "cli/explain_int.h"
+#include "cli/progress.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -99,7 +100,14 @@ static Status measure(const Args *args, Explanation *e)
                          "--progressive: a render that ends");
     options.is_watched = true;
     options.progressive.state_path = NULL;
-    TRY(render_scene(e->scene, &options, args->diag, &e->result));
+    Progress progress;
+    TRY(progress_init(&progress, args));
+    options.progress = progress_show;
+    options.progress_ctx = &progress;
+    Status status = render_scene(e->scene, &options, args->diag, &e->result);
+    progress_done(&progress);
+    if (status != OK)
+        return status;
     e->is_measured = true;
     costs_find(&e->result.plan, &e->result.stats, &e->had);
     take_per_pass(e);
@@ -116,6 +124,8 @@ static Status explain_scene(const Args *args, const Scene *scene)
         explain_print_json(&e);
     else if (status == OK)
         explain_print_text(&e);
+    if (status == ERR_INTERRUPTED)
+        diag_fail(args->diag, status, "interrupted; nothing was measured");
     forecast_done(&e.expected);
     render_result_done(&e.result);
     return status;

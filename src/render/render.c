@@ -73,6 +73,7 @@ static Status render_once(const Tracer *tracer, const RenderOptions *options, Di
         report_end(options);
         take_result(&film, &result, out);
     }
+    pass_result_done(&result);
     film_done(&film);
     return status;
 }

@@ -2,7 +2,7 @@
  * refused, for n = 1, 2, 3 ..., must end in ERR_MEMORY (or a picture), never in a crash.
  * SPDX-License-Identifier: Apache-2.0 */
 #include "base/mem.h"
-#include "render/render.h"
+#include "render/forecast.h"
 #include "sdl/sdl.h"
 
 #include <stdarg.h>
@@ -28,8 +28,30 @@ static void ignore(void *ctx, const char *text)
     (void)ctx, (void)text;
 }
 
-/* Load and render with a single thread, in some passes or (0) at once; returns the status. */
-static Status attempt(uint64_t passes)
+/* What is done with a scene: rendering in passes, at once, or saying what that would take. */
+typedef enum Deed { PASSES, PICTURE, FORECAST } Deed;
+
+static Status render(const Scene *scene, const RenderOptions *options, Diag *diag)
+{
+    RenderResult result;
+    Status status = render_scene(scene, options, diag, &result);
+    if (status == OK)
+        render_result_done(&result);
+    return status;
+}
+
+static Status forecast(const Scene *scene, const RenderOptions *options, Diag *diag)
+{
+    Plan plan;
+    Forecast found;
+    Status status = render_forecast(scene, options, diag, scene->arena, &plan, &found);
+    if (status == OK)
+        forecast_done(&found);
+    return status;
+}
+
+/* Load a scene and do something with it on a single thread; returns the status. */
+static Status attempt(Deed deed)
 {
     Diag diag;
     diag_init(&diag, ignore, NULL);
@@ -38,29 +60,27 @@ static Status attempt(uint64_t passes)
     options.width = 8;
     options.height = 6;
     options.layers = LAYER_DIRECT | LAYER_CAUSTIC;
-    options.plan.is_progressive = passes > 0;
-    options.progressive.passes = passes;
+    options.plan.is_progressive = deed == PASSES;
+    options.progressive.passes = 2;
+    options.plan.has_indirect = deed == FORECAST;
     Scene *scene = NULL;
     Status status = sdl_load_text(&diag, "fault.pms", scene_text, strlen(scene_text), &sdl, &scene);
-    if (status == OK) {
-        RenderResult result;
-        status = render_scene(scene, &options, &diag, &result);
-        if (status == OK)
-            render_result_done(&result);
-    }
+    if (status == OK)
+        status =
+            deed == FORECAST ? forecast(scene, &options, &diag) : render(scene, &options, &diag);
     scene_free(scene);
     diag_done(&diag);
     return status;
 }
 
-static void try_each(uint64_t passes)
+static void try_each(Deed deed)
 {
     enum { MANY = 100000 };
-    assert_int_equal(attempt(passes), OK);
+    assert_int_equal(attempt(deed), OK);
     int successes = 0, n = 1;
     for (; n < MANY && !successes; n += n < 200 ? 1 : n / 50) {
         mem_fail_from(n);
-        Status status = attempt(passes);
+        Status status = attempt(deed);
         mem_fail_from(0);
         assert_true(status == OK || status == ERR_MEMORY || status == ERR_LIBRARY);
         successes += status == OK;
@@ -72,18 +92,25 @@ static void try_each(uint64_t passes)
 static void test_each_allocation(void **state)
 {
     (void)state;
-    try_each(0);
+    try_each(PICTURE);
 }
 
 static void test_each_allocation_of_passes(void **state)
 {
     (void)state;
-    try_each(2);
+    try_each(PASSES);
+}
+
+static void test_each_allocation_of_a_forecast(void **state)
+{
+    (void)state;
+    try_each(FORECAST);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_each_allocation),
-                                       cmocka_unit_test(test_each_allocation_of_passes)};
+                                       cmocka_unit_test(test_each_allocation_of_passes),
+                                       cmocka_unit_test(test_each_allocation_of_a_forecast)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

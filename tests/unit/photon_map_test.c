@@ -276,6 +276,47 @@ static void radius_follows_density(void **state)
     photon_map_free(point);
 }
 
+/* A map that is asked tells where its photons were before, and which of them were seen. */
+static void order_and_seen(void **state)
+{
+    (void)state;
+    enum { COUNT = 5000 };
+    Diag diag;
+    diag_init(&diag, NULL, NULL);
+    PhotonMap *map;
+    uint32_t *order;
+    Photon *before = make_photons(COUNT, place_cube);
+    Photon *photons = make_photons(COUNT, place_cube);
+    assert_int_equal(photon_map_new_full(&diag, photons, NULL, COUNT, v3(0, 0, 0), 2, &order, &map),
+                     OK);
+    for (size_t i = 0; i < COUNT; i++) {
+        Photon photon = photon_map_at(map, i);
+        assert_memory_equal(&photon, &before[order[i]], sizeof photon);
+    }
+    assert_int_equal(photon_map_watch(&diag, map), OK);
+    GatherScratch *scratch = gather_scratch_new();
+    GatherLimits limits = GATHER_LIMITS_DEFAULT;
+    limits.normal_cosine = -1;
+    const uint32_t *near;
+    double radius2;
+    Rgb light;
+    int used = photon_gather(map, v3(0.5, 0.5, 0.5), v3(0, 1, 0), &limits, scratch, &light);
+    photon_gather_see(map, scratch);
+    int found =
+        photon_nearest(map, v3(0.5, 0.5, 0.5), v3(0, 1, 0), &limits, scratch, &near, &radius2);
+    size_t seen = 0;
+    for (size_t i = 0; i < COUNT; i++)
+        seen += photon_map_is_seen(map, i);
+    assert_true(used > 50 && found == used && seen == (size_t)used);
+    for (int i = 0; i < found; i++)
+        assert_true(photon_map_is_seen(map, near[i]));
+    gather_scratch_free(scratch);
+    mem_free(before);
+    mem_free(order);
+    photon_map_free(map);
+    diag_done(&diag);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -288,6 +329,7 @@ int main(void)
         cmocka_unit_test(empty_map),
         cmocka_unit_test(out_of_memory_is_reported),
         cmocka_unit_test(radius_follows_density),
+        cmocka_unit_test(order_and_seen),
     };
     return cmocka_run_group_tests_name("photon_map", tests, NULL, NULL);
 }

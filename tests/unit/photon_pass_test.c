@@ -522,6 +522,71 @@ static void progress_goes_forward(void **state)
     lit_done(&lit);
 }
 
+/* A red light and a blue one, both through clear glass. */
+static const char two_colours[] =
+    "global_settings { assumed_gamma 1 photons { count 6000 } }\n"
+    "light_source { <3,6,0> rgb <1,0,0> }\n"
+    "light_source { <-3,5,1> rgb <0,0,0.3> }\n" FLOOR "sphere { <0,1.5,0>, 1 " GLASS
+    " photons { target refraction on reflection on } }\n";
+
+static bool is_red(const PhotonMap *map, size_t index)
+{
+    Photon photon = photon_map_at(map, index);
+    return photon.rgbe[0] > 0;
+}
+
+static void photons_seen_are_in_the_books_of_their_light(void **state)
+{
+    (void)state;
+    LitScene lit;
+    PhotonMaps maps;
+    lit_make(&lit, two_colours, 2, 1);
+    assert_int_equal(lit.maps.books.caustic[0].seen + lit.maps.books.caustic[1].seen, 0);
+    photon_map_see(lit.maps.caustic, 0); /* of a map that is not watched: nothing happens */
+    assert_false(photon_map_is_seen(lit.maps.caustic, 0));
+    lit.options.is_watched = true;
+    assert_int_equal(photon_pass(lit.tracer, &lit.options, &lit.diag, &lit.stats, &maps), OK);
+    assert_true(photon_map_hash(maps.caustic) == photon_map_hash(lit.maps.caustic));
+    size_t red = 0, blue = 0;
+    for (size_t i = 0; i < photon_map_count(maps.caustic); i++) {
+        bool is_its = is_red(maps.caustic, i);
+        if (is_its || blue < 10)
+            photon_map_see(maps.caustic, i);
+        red += is_its;
+        blue += !is_its && blue < 10;
+    }
+    assert_int_equal(photon_maps_count_seen(&maps, &lit.diag), OK);
+    const LightBooks *books = maps.books.caustic;
+    assert_true(red > 1000 && books[0].stored == red && books[0].seen == red);
+    assert_true(books[1].stored > 100 && books[1].seen == 10);
+    photon_maps_done(&maps);
+    lit_done(&lit);
+}
+
+/* In small there are fewer photons, on which the same part of the budgets falls. */
+static void a_miniature_sends_a_part(void **state)
+{
+    (void)state;
+    LitScene lit;
+    PhotonMaps maps;
+    lit_make(&lit, busy_scene, 2, 1);
+    const Miniature small = {.side = 4, .photons = 0.1};
+    lit.options.miniature = &small;
+    assert_int_equal(photon_pass(lit.tracer, &lit.options, &lit.diag, &lit.stats, &maps), OK);
+    for (int i = 0; i < 4; i++) {
+        const LightBooks *full = &lit.maps.books.caustic[i], *part = &maps.books.caustic[i];
+        assert_true(fabs((double)part->emitted - 0.1 * (double)full->emitted) <= 2);
+        assert_true(part->power == full->power && part->share == full->share);
+    }
+    assert_true(maps.caustic_radius > 2.5 * lit.maps.caustic_radius &&
+                maps.caustic_radius < 6 * lit.maps.caustic_radius);
+    assert_int_equal(miniature_photons(&small, 100), 160);
+    assert_int_equal(miniature_photons(NULL, 100), 100);
+    assert_int_equal(miniature_ball(&small, 30), 192);
+    photon_maps_done(&maps);
+    lit_done(&lit);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -540,6 +605,8 @@ int main(void)
         cmocka_unit_test(count_means_stored),
         cmocka_unit_test(spacing_sets_the_count),
         cmocka_unit_test(full_light_is_what_20_bytes_round),
+        cmocka_unit_test(photons_seen_are_in_the_books_of_their_light),
+        cmocka_unit_test(a_miniature_sends_a_part),
         cmocka_unit_test(interruption_stops_the_pass),
         cmocka_unit_test(scarce_memory_is_reported),
         cmocka_unit_test(progress_goes_forward),
