@@ -108,6 +108,12 @@ static void default_sink(void *ctx, const char *text)
     fputs(text, stderr);
 }
 
+void diag_drop(void *ctx, const char *text)
+{
+    (void)ctx;
+    (void)text;
+}
+
 void diag_init(Diag *diag, void (*sink)(void *ctx, const char *text), void *ctx)
 {
     memset(diag, 0, sizeof *diag);

@@ -30,6 +30,9 @@ typedef struct Diag {
 /* Prepare `diag` to send its messages to `sink`; NULL means standard error. */
 void diag_init(Diag *diag, void (*sink)(void *ctx, const char *text), void *ctx);
 
+/* A sink that drops all messages; errors and warnings are still counted. */
+void diag_drop(void *ctx, const char *text);
+
 /* Say "(n more warnings ...)" for kinds that went over their limit, and release `diag`. */
 void diag_done(Diag *diag);
 

@@ -191,12 +191,6 @@ static void print_move(void *ctx, const MoveResult *result)
     printer->count++;
 }
 
-static void keep_quiet(void *ctx, const char *text)
-{
-    (void)ctx;
-    (void)text;
-}
-
 /* Return the camera's width over its height.  What is wrong with the scene is said when it is read
  * again, to be drawn. */
 static double camera_shape(const Args *args, const SdlOptions *sdl)
@@ -204,7 +198,7 @@ static double camera_shape(const Args *args, const SdlOptions *sdl)
     Diag quiet;
     Scene *scene;
     double shape = (double)sdl->width / sdl->height;
-    diag_init(&quiet, keep_quiet, NULL);
+    diag_init(&quiet, diag_drop, NULL);
     if (sdl_load(&quiet, args->operands[0], sdl, &scene) == OK)
         shape = v3_len(scene->camera.right) / v3_len(scene->camera.up);
     scene_free(scene);

@@ -69,16 +69,17 @@ static double through_three(double first, double second)
     return passes;
 }
 
-/* How much further along a plane `depth` under glass red is seen than blue. */
+/* How much further along a plane `depth` under glass red is seen than blue.  The index of violet is
+ * `dispersion` times that of red, and `ior` in the middle. */
 static double spread(double ior, double dispersion, double sine, double depth)
 {
     enum { BANDS = 1000 };
-    const Interior glass = {
-        .ior = ior, .dispersion = DISPERSION_RATIO, .coefficients = {dispersion}};
     double sum = 0;
     for (int i = 0; i < BANDS; i++) {
         SpectrumBand band = spectrum_band(i, BANDS);
-        double bent = sine / interior_ior(&glass, band.wavelength);
+        double violet = (SPECTRUM_LAST + SPECTRUM_FIRST - 2 * band.wavelength) /
+                        (2 * (SPECTRUM_LAST - SPECTRUM_FIRST));
+        double bent = sine / (ior * pow(dispersion, violet));
         sum += ((double)band.color.r - (double)band.color.b) * depth * bent / sqrt(1 - bent * bent);
     }
     return sum;
@@ -95,15 +96,11 @@ static double scattered_once(double cosine, double depth, double scattering, dou
 
 #define HEAD                                                                                       \
     "#version 3.7; global_settings { assumed_gamma 1 max_trace_level 60 adc_bailout 1e-7 }\n"
-#define TEXT(x) #x
 #define NARROW "right 1e-3*x up 1e-3*y "
-#define SPOT(x, y, z)                                                                              \
-    HEAD "camera { orthographic location <" TEXT(x) "," TEXT(y) "," TEXT(                          \
-        z) "> direction -y "                                                                       \
-           "right 1e-3*x up 1e-3*z }\n"
-#define SLANT(aside, up)                                                                           \
-    HEAD "camera { orthographic location <-" TEXT(aside) "," TEXT(up) ",0> direction z " NARROW    \
-                                                                      "look_at 0 }\n"
+#define SPOT(place)                                                                                \
+    HEAD "camera { orthographic location " place " direction -y right 1e-3*x up 1e-3*z }\n"
+#define SLANT(place)                                                                               \
+    HEAD "camera { orthographic location " place " direction z " NARROW "look_at 0 }\n"
 #define ALONG_Z HEAD "camera { orthographic location -4*z direction z " NARROW "}\n"
 #define OBLIQUE HEAD "camera { location <1,2,-5> look_at 0 angle 40 right x up y }\n"
 #define WHITE_FLOOR "plane { y, 0 pigment { rgb 1 } finish { ambient 0 diffuse 1 } }\n"
@@ -112,7 +109,7 @@ static double scattered_once(double cosine, double depth, double scattering, dou
     "  reflection { 0, 1 fresnel on } }\n"
 #define FEW "global_settings { pms { global_photons 20000 } }\n"
 #define GLOWING_DISC                                                                               \
-    SPOT(0, 0.2, 0)                                                                                \
+    SPOT("<0,0.2,0>")                                                                              \
     FEW "disc { <0,0.5,0>, y, 0.5 pigment { rgb 1 } finish { ambient 0 diffuse 0 emission 1 } }\n" \
         "disc { 0, y, 1 pigment { rgb 1 } finish { ambient 0 diffuse 1 } }\n"
 #define FURNACE                                                                                    \

@@ -1,5 +1,5 @@
-/* Comparing pictures of a scene and of the same scene moved.  SPDX-License-Identifier: Apache-2.0
- */
+/* Comparing pictures of a scene, and of the same scene moved.
+ * SPDX-License-Identifier: Apache-2.0 */
 #include "selftest/change.h"
 
 #include "base/mem.h"
@@ -219,7 +219,7 @@ void change_base_done(ChangeBase *base)
 
 /* --- the moved scene ------------------------------------------------------------------------- */
 
-static size_t count_bits(const Image *a, const Image *b)
+size_t change_bits(const Image *a, const Image *b)
 {
     size_t pixels = (size_t)a->width * (size_t)a->height, count = 0;
     for (size_t i = 0; i < pixels; i++)
@@ -227,12 +227,29 @@ static size_t count_bits(const Image *a, const Image *b)
     return count;
 }
 
-static double largest_of(const float *a, const float *b, size_t count)
+double change_largest(const Image *a, const Image *b)
 {
+    size_t values = 4 * (size_t)a->width * (size_t)a->height;
     double largest = 0;
-    for (size_t i = 0; i < count; i++)
-        largest = fmax(largest, fabs((double)a[i] - (double)b[i]));
+    for (size_t i = 0; i < values; i++)
+        largest =
+            fmax(largest, fabs((double)shown(pixels_of(a)[i]) - (double)shown(pixels_of(b)[i])));
     return largest;
+}
+
+/* Find the pixel that changed most from the first picture, chance or not. */
+static void find_worst(const Image *first, const Image *moved, Change *out)
+{
+    double most = -1;
+    for (size_t i = 0; i < out->pixels; i++)
+        for (size_t c = 4 * i; c < 4 * i + 3; c++) {
+            double off = fabs((double)pixels_of(moved)[c] - (double)pixels_of(first)[c]);
+            if (!(off <= most)) { /* no number is worst */
+                most = isfinite(off) ? off : INFINITY;
+                out->x = (int)(i % (size_t)first->width);
+                out->y = (int)(i / (size_t)first->width);
+            }
+        }
 }
 
 Status change_find(const ChangeBase *base, const Image *moved, Diag *diag, Change *out)
@@ -246,12 +263,14 @@ Status change_find(const ChangeBase *base, const Image *moved, Diag *diag, Chang
     show(base->first, still);
     show(moved, now);
     *out = (Change){.is_exact = out->is_exact, .pixels = pixels, .chance = base->chance};
-    out->bits = count_bits(base->first, moved);
-    out->largest = largest_of(still, now, values);
+    out->bits = change_bits(base->first, moved);
+    out->largest = change_largest(base->first, moved);
     out->rmse = rmse_of(still, now, values);
     out->mean_off = fabs(mean_of(now, values) - base->light) / light;
     out->mean_allowed = CHANGE_MEAN_PART + CHANGE_MEAN_RANGES * base->light_range / light;
     out->counts = judge_all(base, now, &out->x, &out->y);
+    if (out->is_exact)
+        find_worst(base->first, moved, out);
     mem_free(still);
     return OK;
 }

@@ -69,6 +69,11 @@ void change_base_done(ChangeBase *base);
 /* Fill all of `out` but is_exact, which is asked.  ERR_MEMORY or OK. */
 Status change_find(const ChangeBase *base, const Image *moved, Diag *diag, Change *out);
 
+/* Return how many pixels differ in any bit, and the largest difference of a channel as a display
+ * shows it, of two pictures of one size. */
+size_t change_bits(const Image *a, const Image *b);
+double change_largest(const Image *a, const Image *b);
+
 /* Return the verdict, and whether that is as it should be. */
 ChangeKind change_kind(const Change *change);
 bool change_is_good(const Change *change);

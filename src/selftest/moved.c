@@ -109,12 +109,6 @@ static Similarity move_by(const Move *move, double size)
     return similarity_make(&turn, 1, v3(0, 0, 0));
 }
 
-static void keep_quiet(void *ctx, const char *text)
-{
-    (void)ctx;
-    (void)text;
-}
-
 /* Draw the scene moved, without a word: all there is to warn of was said of the unmoved scene. */
 static Status draw_moved(const MovedOptions *options, const Similarity *by, Diag *quiet, Image *out)
 {
@@ -144,7 +138,7 @@ static Status do_move(const Move *move, Original *original, const ChangeBase *ba
     MoveResult result = {.name = move->name, .change.is_exact = move->kind == MOVE_SCALE};
     Diag quiet;
     Image picture;
-    diag_init(&quiet, keep_quiet, NULL);
+    diag_init(&quiet, diag_drop, NULL);
     Status status = draw_moved(options, &by, &quiet, &picture);
     diag_done(&quiet);
     if (status != OK)
@@ -176,7 +170,7 @@ static Status do_moves(Original *original, const Image *pictures, const MovedOpt
 static Status draw_seeds(const Scene *scene, const RenderOptions *options, Diag *diag, Image *out)
 {
     Diag quiet;
-    diag_init(&quiet, keep_quiet, NULL);
+    diag_init(&quiet, diag_drop, NULL);
     Status status = OK;
     for (int i = 0; i < SEEDS && status == OK; i++) {
         RenderOptions render = *options;

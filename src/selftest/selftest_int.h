@@ -2,18 +2,7 @@
 #ifndef PMS_SELFTEST_SELFTEST_INT_H
 #define PMS_SELFTEST_SELFTEST_INT_H
 
-#include "image/srgb.h"
 #include "selftest/selftest.h"
-
-/* Return how far two values of light are apart on a display whose white is 1; 1 if either is no
- * number. */
-static inline double seen_difference(float a, float b)
-{
-    if (!isfinite(a) || !isfinite(b))
-        return 1;
-    float x = srgb_encode(fminf(fmaxf(a, 0), 1)), y = srgb_encode(fminf(fmaxf(b, 0), 1));
-    return fabs((double)x - (double)y);
-}
 
 /* Draw a scene; the caller frees *out with image_done. */
 Status selftest_draw_scene(const Scene *scene, const RenderOptions *options, Diag *diag,

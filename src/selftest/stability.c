@@ -4,8 +4,6 @@
  * through media and from surface to surface.  SPDX-License-Identifier: Apache-2.0 */
 #include "selftest/selftest_int.h"
 
-#include <string.h>
-
 enum { SIDE = 40, SIZE = 10 /* of the scene, its units */ };
 
 #define HEAD(more) "#version 3.7; global_settings { assumed_gamma 1 max_trace_level 8 " more " }\n"
@@ -50,27 +48,6 @@ static const Move moves[] = {
     {"shifted by 1e9 sizes", "largest change of a pixel, white is 1", solid, 1, 1e9, 1.0 / 255},
 };
 
-static const float *pixels_of(const Image *image)
-{
-    return image_find_layer(image, "")->pixels;
-}
-
-static double count_changed(const Image *a, const Image *b)
-{
-    int count = 0;
-    for (size_t i = 0; i < SIDE * SIDE; i++)
-        count += memcmp(pixels_of(a) + 4 * i, pixels_of(b) + 4 * i, 4 * sizeof(float)) != 0;
-    return count;
-}
-
-static double largest_change(const Image *a, const Image *b)
-{
-    double largest = 0;
-    for (size_t i = 0; i < 4 * SIDE * SIDE; i++)
-        largest = fmax(largest, seen_difference(pixels_of(a)[i], pixels_of(b)[i]));
-    return largest;
-}
-
 static Status draw(const Move *move, int threads, const SelftestOptions *options, Diag *diag,
                    Image *out)
 {
@@ -90,7 +67,8 @@ static Status check_move(const Move *move, const Image *still, const SelftestOpt
 {
     Image moved;
     TRY(draw(move, options->threads > 1 ? options->threads : 2, options, diag, &moved));
-    double change = move->limit > 0 ? largest_change(still, &moved) : count_changed(still, &moved);
+    double change =
+        move->limit > 0 ? change_largest(still, &moved) : (double)change_bits(still, &moved);
     image_done(&moved);
     Claim claim = {move->name, move->what, 0, change, 0, move->limit};
     selftest_claim(options, &claim, failed);

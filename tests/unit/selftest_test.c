@@ -110,6 +110,7 @@ static void same_bits(void **state)
     change = find(&f, true);
     assert_int_equal(change_kind(&change), CHANGE_BITS);
     assert_false(change_is_good(&change));
+    assert_true(change.x == 3 && change.y == 4);
     change = find(&f, false);
     assert_int_equal(change_kind(&change), CHANGE_HOLDS);
     fixture_done(&f);
