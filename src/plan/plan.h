@@ -70,6 +70,12 @@ static inline bool plan_forbids(const Plan *plan, FeatureId feature)
     return plan->rows[feature].forced == TRI_OFF;
 }
 
+/* Return true if a light has an area, and the command line leaves it that. */
+static inline bool plan_light_has_area(const Plan *plan, const Light *light)
+{
+    return light->area.size1 > 0 && !plan_forbids(plan, FEATURE_AREA_LIGHTS);
+}
+
 /* Return true if paths can meet a light: one with an area, or any if lights have a radius. */
 bool plan_light_has_size(const Light *light, double light_radius);
 

@@ -294,7 +294,7 @@ static void place_face(ShadowFace *face, const Tracer *tracer, const Light *ligh
 bool shadow_view_is_of_use(const Tracer *tracer, const Light *light)
 {
     double edge = face_edge(tracer, light);
-    bool is_point = light->area.size1 == 0 && !light->is_shadowless;
+    bool is_point = !plan_light_has_area(tracer->plan, light) && !light->is_shadowless;
     bool has_bound = !light->is_parallel || bound_radius(tracer->bound) > 0;
     return is_point && has_bound && edge > 0 && isfinite(edge);
 }

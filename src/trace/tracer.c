@@ -152,10 +152,10 @@ static void describe_object(Tracer *tracer, uint32_t i)
 }
 
 /* Rays to this light all end in one point. */
-static bool has_view(const Light *light)
+static bool has_view(const Tracer *tracer, const Light *light)
 {
     return light->kind != LIGHT_CYLINDER && !light->is_parallel && !light->is_shadowless &&
-           light->area.size1 == 0;
+           !plan_light_has_area(tracer->plan, light);
 }
 
 /* What may be seen from the eye and from the lights that are points. */
@@ -167,7 +167,7 @@ static Status make_views(Tracer *tracer, const Bound *boxes, uint32_t count, Dia
     bool is_complete = true;
     for (int i = 0; i < lights; i++) {
         const Light *light = &scene->lights[i];
-        if (!has_view(light))
+        if (!has_view(tracer, light))
             continue;
         tracer->light_views[i] =
             view_index_new(light->location, boxes, objects, count, scene->object_count);

@@ -100,6 +100,46 @@ same clear "--effect caustics=off --effect caustics=on" clear "" "the last one h
 same clear "--quality 5 --effect reflection=on,refraction=on,dispersion=on,caustics=on,indirect=on" clear "" \
     "an effect forced on is there at any quality"
 
+# An effect that is off is one that the scene never had: the same pixels as without its words.
+sed '/^global_settings/d' "$T/all.pms" >"$T/bare.pms"
+without() {
+    sed "s/$2//" "$T/bare.pms" >"$T/less.pms"
+    same bare "--effect $1=off" less "" "$1=off is the scene without it"
+}
+without reflection 'reflection 0[.0-9]*'
+without dispersion 'dispersion 1.05'
+without absorption 'fade_distance 1 '
+without area_lights 'area_light x, z, 3, 3'
+without highlights 'specular 0.5'
+without focal_blur 'aperture 0.1'
+without sky_sphere '^sky_sphere.*'
+without fog '^fog.*'
+without rainbow '^rainbow.*'
+without media '^media.*'
+same bare "--effect lights=off" bare "--effect shadows=off,area_lights=off,highlights=off,lights=off" \
+    "without lights there is nothing to cast shadows"
+
+# Paths bring the light of sky and surfaces without asking a row of the plan: off all the same.
+cat >"$T/sky.pms" <<'S'
+#version 3.7;
+global_settings { assumed_gamma 1 }
+camera { location <0,2,0> look_at <0,0,0.01> }
+sky_sphere { pigment { rgb 1 } }
+plane { y, 0 pigment { rgb 0.9 } finish { ambient 0 diffuse 0.8 } }
+S
+sed 's/^sky.*/box { <-9,4,-9>, <9,5,9> pigment { rgb 1 } finish { ambient 0 diffuse 0 emission 1 } }/' \
+    "$T/sky.pms" >"$T/lamp.pms"
+for options in "--integrator=path --aa 4" "--gi=gather"; do
+    for pair in sky:sky_light lamp:emission_photons; do
+        scene=${pair%:*} effect=${pair#*:}
+        run "$PMS" "$T/$scene.pms" $size $options -o "$T/a.exr" &&
+            run "$PMS" "$T/$scene.pms" $size $options --effect $effect=off -o "$T/b.exr" &&
+            run "$PMS" compare "$T/a.exr" "$T/b.exr"
+        grep -qE '^means +0\.[3-9][0-9]* 0$' "$T/out"
+        ok $? "$options: no light from there with $effect=off"
+    done
+done
+
 shows "$T/plain.pms" "" caustic_map false && shows "$T/plain.pms" "--effect caustics=on" caustic_map true &&
     ! grep -q '"photons.caustic": 0' "$T/out"
 ok $? "caustics=on without photons{} sends photons at what reflects or refracts"
