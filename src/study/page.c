@@ -267,6 +267,18 @@ static void put_trend(const Page *page, const StudyTrend *trend)
     put(page, "</td><td>", halving, "</td></tr>\n");
 }
 
+/* What packing photons into 20 bytes costs. */
+static void put_precision(const Page *page, const StudyTrend *trend)
+{
+    const StudyAnalysis *all = &page->study->analysis;
+    if (trend->setting != SETTING_PRECISION || trend->count < 2)
+        return;
+    put_percent(page, "<p>A photon takes 20 bytes: so the error is ",
+                all->rows[trend->rows[0]].error, "");
+    put_percent(page, ". Kept in full, in 44 bytes, photons leave ",
+                all->rows[trend->rows[1]].error, ".</p>\n");
+}
+
 static void put_settings(const Page *page)
 {
     const StudyAnalysis *all = &page->study->analysis;
@@ -282,6 +294,8 @@ static void put_settings(const Page *page)
     for (int i = 0; i < all->trend_count; i++)
         put_trend(page, &all->trends[i]);
     fputs("</table>\n", page->file);
+    for (int i = 0; i < all->trend_count; i++)
+        put_precision(page, &all->trends[i]);
     put_panels(page);
 }
 
@@ -365,6 +379,10 @@ static void put_all_row(const Page *page, const StudyRow *row)
     put_time(page, "<td class=\"n\">", row->phase[PHASE_IRRADIANCE] + row->phase[PHASE_EYE],
              "</td>");
     put_percent(page, "<td class=\"n\">", row->error, "</td>");
+    if (isnan(row->estimate))
+        fputs("<td></td>", page->file);
+    else
+        put_percent(page, "<td class=\"n\">", row->estimate, "</td>");
     fprintf(page->file, "<td class=\"n\">%.3g</td><td class=\"n\">%.4f</td>", row->rmse, row->flip);
     if (isnan(row->spread))
         fputs("<td></td>", page->file);
@@ -377,7 +395,8 @@ static void put_all(const Page *page)
 {
     fputs("<details><summary>Every value that was measured</summary>\n<table><tr><th>setting</th>"
           "<th class=\"n\">time</th><th class=\"n\">photons</th><th class=\"n\">eye</th>"
-          "<th class=\"n\">error</th><th class=\"n\">RMSE</th><th class=\"n\">FLIP</th>"
+          "<th class=\"n\">error</th><th class=\"n\">estimate</th><th class=\"n\">RMSE</th><th "
+          "class=\"n\">FLIP</th>"
           "<th class=\"n\">spread</th><th class=\"n\">seeds</th></tr>\n",
           page->file);
     for (int i = 0; i < page->study->analysis.row_count; i++)

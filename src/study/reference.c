@@ -35,13 +35,21 @@ typedef struct Builder {
     uint64_t passes_before;
 } Builder;
 
+/* Return true if the plan has effects that photons bring only where the scene asks for them, or
+ * only so far: paths bring all of that light. */
+static bool has_partial_light(const Plan *plan)
+{
+    return plan_has(plan, FEATURE_REFLECTION) || plan_has(plan, FEATURE_REFRACTION) ||
+           plan_has_air(plan);
+}
+
 bool reference_can_be_path(const Scene *scene, const RenderOptions *options, const Plan *plan)
 {
     const RadiositySettings *radiosity = &scene->settings.radiosity;
     PlanOptions paths = options->plan;
     Plan other;
     paths.integrator = INTEGRATOR_PATH;
-    if (!plan_has(plan, FEATURE_GLOBAL_MAP) || plan->has_ambient ||
+    if (!plan_has(plan, FEATURE_GLOBAL_MAP) || plan->has_ambient || has_partial_light(plan) ||
         radiosity->recursion_limit > 0 || radiosity->brightness != 1 ||
         plan_make(scene, &paths, scene->arena, &other) != OK)
         return false;

@@ -20,7 +20,7 @@ typedef struct ReferenceOptions {
 } ReferenceOptions;
 
 /* Return true if path tracing shows the light that photons do: all of it, from lights that paths
- * can meet.  `plan` is of the study's pictures. */
+ * can meet, in a scene without mirrors, glass and media.  `plan` is of the study's pictures. */
 bool reference_can_be_path(const Scene *scene, const RenderOptions *options, const Plan *plan);
 
 /* Build the reference.  ERR_INTERRUPTED leaves none, but its state on disk. */

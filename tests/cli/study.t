@@ -102,6 +102,18 @@ fails 2 "--time wants a time" "a bad time" "$PMS" study s.pms --time=soon
 fails 2 "one folder, got 2" "two folders" "$PMS" study s.pms -o a -o b
 fails 2 "wants one scene file" "no scene" "$PMS" study
 fails 3 "cannot make the folder" "a folder that cannot be" "$PMS" study s.pms $size -o none/where
+# The examples of the page, as they stand there.
+ln -s "$ROOT/scenes" "$ROOT/stdlib" .
+mkdir -p pms-bin
+ln -s "$PMS" pms-bin/pms
+awk '/^\.Bd -literal/ { inside = 1; next } /^\.Ed/ { inside = 0 } inside' "$ROOT/man/pms-study.1" >examples
+while read -r line; do
+    run timeout 100 env PATH="$T/pms-bin:$PATH" sh -c "$line -L stdlib"
+    ok "$code" "pms-study(1): $line"
+done <examples
+[ "$(wc -l <examples)" -ge 4 ]
+ok $? "there are examples"
+
 mkdir -p bin
 for tool in sh rm; do ln -sf "$(command -v $tool)" bin/; done
 run env PATH="$T/bin" "$PMS" study s.pms $size --time=1s -o given --reference=ref.exr

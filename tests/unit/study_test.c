@@ -2,6 +2,7 @@
  * reference's noise.  SPDX-License-Identifier: Apache-2.0 */
 #include "base/rng.h"
 #include "study/analysis.h"
+#include "study/reference.h"
 #include "study/schedule.h"
 
 #include <math.h>
@@ -163,6 +164,32 @@ static void only_what_matters_is_tried(void **state)
     for (int i = 0; i < s.count; i++) /* 16 samples are enough */
         assert_false(s.points[i].is_fine);
     scene_free(s.scene);
+}
+
+/* Paths are the truth only where photons bring all of the light. */
+static void paths_are_true_without_glass(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        bool is_true;
+    } cases[] = {
+        {glass, false},
+        {indirect, false}, /* media */
+        {"#version 3.7;\nglobal_settings { pms { gi on } }\nlight_source { 0, 1 }\n"
+         "plane { y, -1 pigment { rgb 1 } }\n",
+         true},
+        {"#version 3.7;\nlight_source { 0, 1 }\nplane { y, -1 pigment { rgb 1 } }\n", false},
+        {"#version 3.7;\nglobal_settings { pms { gi on } }\nlight_source { 0, 1 }\n"
+         "plane { y, -1 pigment { rgb 1 } finish { reflection 0.1 } }\n",
+         false}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Setup s;
+        set_up(&s, cases[i].text, 1);
+        bool found = reference_can_be_path(s.scene, &s.options, &s.plan);
+        assert_int_equal(found, cases[i].is_true);
+        scene_free(s.scene);
+    }
 }
 
 static void points_set_what_they_say(void **state)
@@ -486,6 +513,7 @@ int main(void)
         cmocka_unit_test(no_slope_without_seconds_apart),
         cmocka_unit_test(the_front_is_what_nothing_beats),
         cmocka_unit_test(only_what_matters_is_tried),
+        cmocka_unit_test(paths_are_true_without_glass),
         cmocka_unit_test(points_set_what_they_say),
         cmocka_unit_test(media_are_copied_to_be_changed),
         cmocka_unit_test(runs_come_back),
