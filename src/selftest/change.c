@@ -219,6 +219,26 @@ void change_base_done(ChangeBase *base)
 
 /* --- the moved scene ------------------------------------------------------------------------- */
 
+/* How far a pixel is off the mean. */
+static double off_mean(const ChangeBase *base, const Image *image, size_t pixel)
+{
+    double most = 0;
+    for (size_t c = 0; c < 3; c++) {
+        float value = shown(pixels_of(image)[4 * pixel + c]);
+        most = fmax(most, fabs((double)value - (double)base->mean[3 * pixel + c]));
+    }
+    return most;
+}
+
+void change_keep_less(const ChangeBase *base, Image *moved, const Image *again)
+{
+    float *pixels = image_find_layer(moved, "")->pixels;
+    size_t count = (size_t)base->width * (size_t)base->height;
+    for (size_t i = 0; i < count; i++)
+        if (off_mean(base, again, i) < off_mean(base, moved, i))
+            memcpy(pixels + 4 * i, pixels_of(again) + 4 * i, 4 * sizeof *pixels);
+}
+
 size_t change_bits(const Image *a, const Image *b)
 {
     size_t pixels = (size_t)a->width * (size_t)a->height, count = 0;

@@ -69,6 +69,10 @@ void change_base_done(ChangeBase *base);
 /* Fill all of `out` but is_exact, which is asked.  ERR_MEMORY or OK. */
 Status change_find(const ChangeBase *base, const Image *moved, Diag *diag, Change *out);
 
+/* Put into each pixel of `moved` what `again` has there, another picture of the same with another
+ * seed, where that changed less: what is no chance changed in both. */
+void change_keep_less(const ChangeBase *base, Image *moved, const Image *again);
+
 /* Return how many pixels differ in any bit, and the largest difference of a channel as a display
  * shows it, of two pictures of one size. */
 size_t change_bits(const Image *a, const Image *b);

@@ -110,25 +110,48 @@ static Similarity move_by(const Move *move, double size)
 }
 
 /* Draw the scene moved, without a word: all there is to warn of was said of the unmoved scene. */
-static Status draw_moved(const MovedOptions *options, const Similarity *by, Diag *quiet, Image *out)
+static Status draw_moved(const MovedOptions *options, const Similarity *by, uint64_t more_seed,
+                         Image *out)
 {
     SdlOptions sdl = *options->sdl;
     RenderOptions render = *options->render;
+    Diag quiet;
     Scene *scene;
     sdl.moved_by = by;
     render.plan.light_radius *= by->scale;
-    TRY(load(options, &sdl, quiet, &scene));
-    Status status = selftest_draw_scene(scene, &render, quiet, out);
+    render.seed += more_seed;
+    diag_init(&quiet, diag_drop, NULL);
+    Status status = load(options, &sdl, &quiet, &scene);
+    if (status == OK)
+        status = selftest_draw_scene(scene, &render, &quiet, out);
     scene_free(scene);
+    diag_done(&quiet);
     return status;
 }
 
-/* The message for a moved scene that cannot be drawn though the unmoved one can. */
-static Status cannot_draw(Status status, const Move *move, Diag *diag)
+/* What chance may have done is looked at again with another seed. */
+static Status look_again(const MovedOptions *options, const Similarity *by, const ChangeBase *base,
+                         Diag *diag, Image *picture, Change *change)
 {
-    return status == ERR_INTERRUPTED
-               ? status
-               : diag_fail(diag, status, "the scene cannot be drawn %s", move->name);
+    Image again;
+    if (change_kind(change) != CHANGE_SEEN || base->seed_rmse == 0)
+        return OK;
+    TRY(draw_moved(options, by, SEEDS, &again));
+    change_keep_less(base, picture, &again);
+    image_done(&again);
+    return change_find(base, picture, diag, change);
+}
+
+static Status find_change(const MovedOptions *options, const Similarity *by, const ChangeBase *base,
+                          Diag *diag, Change *change)
+{
+    Image picture;
+    TRY(draw_moved(options, by, 0, &picture));
+    Status status = change_find(base, &picture, diag, change);
+    if (status == OK)
+        status = look_again(options, by, base, diag, &picture, change);
+    image_done(&picture);
+    return status;
 }
 
 static Status do_move(const Move *move, Original *original, const ChangeBase *base,
@@ -136,17 +159,11 @@ static Status do_move(const Move *move, Original *original, const ChangeBase *ba
 {
     Similarity by = move_by(move, original->size);
     MoveResult result = {.name = move->name, .change.is_exact = move->kind == MOVE_SCALE};
-    Diag quiet;
-    Image picture;
-    diag_init(&quiet, diag_drop, NULL);
-    Status status = draw_moved(options, &by, &quiet, &picture);
-    diag_done(&quiet);
-    if (status != OK)
-        return cannot_draw(status, move, diag);
-    status = change_find(base, &picture, diag, &result.change);
-    image_done(&picture);
-    if (status != OK)
+    Status status = find_change(options, &by, base, diag, &result.change);
+    if (status == ERR_INTERRUPTED)
         return status;
+    if (status != OK)
+        return diag_fail(diag, status, "the scene cannot be drawn %s", move->name);
     result.worst = object_at(original, result.change.x, result.change.y);
     *failed += !change_is_good(&result.change);
     options->done(options->ctx, &result);

@@ -174,6 +174,33 @@ static void rare_spots(void **state)
     fixture_done(&f);
 }
 
+/* A change is in pictures of all seeds, a spot of chance in one. */
+static void seen_again(void **state)
+{
+    (void)state;
+    Fixture f;
+    Image again;
+    fixture_init(&f, 0.01f);
+    make_picture(&again, 0.01f, 99);
+    for (int i = 0; i < 9; i++)
+        add_spot(&f.moved, 3, 2 + 3 * i);
+    add_spot(&again, 20, 2);
+    Change change = find(&f, false);
+    assert_int_equal(change_kind(&change), CHANGE_SEEN);
+    change_keep_less(&f.base, &f.moved, &again);
+    change = find(&f, false);
+    assert_int_equal(change_kind(&change), CHANGE_HOLDS);
+    for (int i = 0; i < 9; i++) {
+        add_spot(&f.moved, 3, 2 + 3 * i);
+        add_spot(&again, 3, 2 + 3 * i);
+    }
+    change_keep_less(&f.base, &f.moved, &again);
+    change = find(&f, false);
+    assert_int_equal(change_kind(&change), CHANGE_SEEN);
+    image_done(&again);
+    fixture_done(&f);
+}
+
 static void without_chance_all_is_seen(void **state)
 {
     (void)state;
@@ -219,6 +246,7 @@ int main(void)
         cmocka_unit_test(same_bits),
         cmocka_unit_test(chance_is_no_change),
         cmocka_unit_test(rare_spots),
+        cmocka_unit_test(seen_again),
         cmocka_unit_test(without_chance_all_is_seen),
         cmocka_unit_test(edges_may_move_a_little),
     };
