@@ -209,8 +209,8 @@ static Status make_beams(Emission *emission)
         Beam beam = {.light = light, .source = i, .spacing_factor = 1};
         if (!takes_part(emission, i))
             continue;
-        beam.is_spread = light->has_area_photons &&
-                         plan_light_has_area(tracer_plan(emission->tracer), light);
+        beam.is_spread =
+            light->has_area_photons && plan_light_has_area(tracer_plan(emission->tracer), light);
         if (map_is_aimed(emission->rules.map)) {
             is_good = add_target_beams(emission, &capacity, beam);
         } else {

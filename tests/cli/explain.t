@@ -86,6 +86,9 @@ ok $? "photons nobody sees are wasted; a light that sends none"
 run "$PMS" explain "$T/blind.pms" -w 32 --height 24 --measure --progressive --passes=3
 [ "$code" -eq 0 ] && grep -qE "^any picture +770 +[0-9]+% +770 .*camera rays$" "$T/out"
 ok $? "--measure with passes"
+run "$PMS" explain "$T/blind.pms" -w 32 --height 24 --aa 4
+[ "$code" -eq 0 ] && grep -qE "^any picture +3.1 k .*camera rays$" "$T/out"
+ok $? "samples of pixels count"
 fails 2 "--measure wants --passes or --time" "a render that does not end" \
     "$PMS" explain "$T/blind.pms" --measure --progressive
 plan
