@@ -7,6 +7,10 @@
 
 #define SECONDS_MAX 1e9
 
+/* Errors that may be asked for: below them rounding takes over, above them nothing is left. */
+#define ERROR_PERCENT_MIN 0.01
+#define ERROR_PERCENT_MAX 100.0
+
 /* The file beside the first picture that the state is kept in. */
 #define STATE_ENDING ".pmsstate"
 
@@ -29,6 +33,23 @@ Status args_time(const Args *args, double *seconds)
     return OK;
 }
 
+/* Read a percentage as a part of 1. */
+static Status read_error(const Args *args, double *error)
+{
+    const char *text = args->value[OPT_ERROR];
+    if (!text)
+        return OK;
+    char *end;
+    double percent = strtod(text, &end);
+    bool is_percent = end != text && end[0] == '%' && !end[1];
+    if (!is_percent || !(percent >= ERROR_PERCENT_MIN && percent <= ERROR_PERCENT_MAX))
+        return diag_fail(args->diag, ERR_USAGE,
+                         "--error wants a percentage from %g%% to %g%% such as 2%%, got '%s'",
+                         ERROR_PERCENT_MIN, ERROR_PERCENT_MAX, text);
+    *error = percent / 100;
+    return OK;
+}
+
 static Status state_path(const Args *args, const char **out)
 {
     if (args->output_count == 0)
@@ -45,25 +66,25 @@ static Status state_path(const Args *args, const char **out)
 
 Status args_progressive(const Args *args, RenderOptions *out)
 {
-    static const OptionId needing[] = {OPT_PASSES, OPT_TIME, OPT_RESUME};
-    static const char *const names[] = {"passes", "time", "resume"};
+    static const OptionId needing[] = {OPT_PASSES, OPT_RESUME};
+    static const char *const names[] = {"passes", "resume"};
     ProgressiveOptions *progressive = &out->progressive;
     long passes;
-    Tri forced = args->effects[FEATURE_PROGRESSIVE];
-    out->plan.is_progressive = forced ? forced == TRI_ON : args_has(args, OPT_PROGRESSIVE);
-    for (int i = 0; i < 3 && !out->plan.is_progressive; i++)
+    bool is_kept = args_has(args, OPT_PROGRESSIVE);
+    for (int i = 0; i < 2 && !is_kept; i++)
         if (args_has(args, needing[i]))
             return diag_fail(args->diag, ERR_USAGE, "--%s wants --progressive beside it", names[i]);
+    out->plan.is_progressive = is_kept || args_has(args, OPT_TIME) || args_has(args, OPT_ERROR);
     if (!out->plan.is_progressive)
         return OK;
     if (args->has_pov_aa)
-        return diag_fail(
-            args->diag, ERR_USAGE,
-            "+A has no meaning with --progressive, whose passes each take --aa samples "
-            "of a pixel");
+        return diag_fail(args->diag, ERR_USAGE,
+                         "+A has no meaning with --progressive, --time and --error, whose passes "
+                         "each take --aa samples of a pixel");
     TRY(args_int(args, OPT_PASSES, 1, UINT32_MAX, 0, &passes));
     TRY(args_time(args, &progressive->seconds));
+    TRY(read_error(args, &progressive->error));
     progressive->passes = (uint64_t)passes;
     progressive->is_resumed = args_has(args, OPT_RESUME);
-    return state_path(args, &progressive->state_path);
+    return is_kept ? state_path(args, &progressive->state_path) : OK;
 }

@@ -42,9 +42,48 @@ static void show_line(const Progress *progress, const RenderProgress *now, int p
         snprintf(pass, sizeof pass, "pass %" PRIu64 " of %" PRIu64 ", ", now->pass, now->passes);
     else if (now->pass)
         snprintf(pass, sizeof pass, "pass %" PRIu64 ", ", now->pass);
-    fprintf(stderr, "%s%s%s %d %%%s%s", progress->is_terminal ? "\r\033[K" : "", pass, now->phase,
-            percent, left, progress->is_terminal ? "" : "\n");
+    char error[64] = "";
+    if (now->error > 0 && now->error_wanted > 0)
+        snprintf(error, sizeof error, "error %.3g %% of %.3g %%, ", 100 * now->error,
+                 100 * now->error_wanted);
+    else if (now->error > 0)
+        snprintf(error, sizeof error, "error %.3g %%, ", 100 * now->error);
+    fprintf(stderr, "%s%s%s%s %d %%%s%s", progress->is_terminal ? "\r\033[K" : "", pass, error,
+            now->phase, percent, left, progress->is_terminal ? "" : "\n");
     fflush(stderr);
+}
+
+void progress_tell_plan(void *ctx, const SeriesPlan *plan)
+{
+    Progress *progress = ctx;
+    if (progress->kind == PROGRESS_NONE)
+        return;
+    progress_done(progress);
+    if (progress->kind == PROGRESS_JSON) {
+        fprintf(stderr, "{\"plan\": true, \"passes\": ");
+        json_number(stderr, plan->passes);
+        fprintf(stderr, ", \"seconds_a_pass\": ");
+        json_number(stderr, plan->seconds);
+        fprintf(stderr, ", \"photons\": ");
+        json_number(stderr, plan->photons);
+        fprintf(stderr, ", \"samples\": ");
+        json_number(stderr, plan->samples);
+        fprintf(stderr, ", \"error\": ");
+        json_number(stderr, plan->error);
+        fprintf(stderr, "}\n");
+        return;
+    }
+    fprintf(stderr, "pms: error %.3g %% after %" PRIu64 " passes; the plan: ", 100 * plan->error,
+            plan->passes_so_far);
+    if (isfinite(plan->passes))
+        fprintf(stderr, "about %.0f passes of %.2g s, ", ceil(plan->passes), plan->seconds);
+    else
+        fprintf(stderr, "passes of %.2g s, ", plan->seconds);
+    if (plan->photons >= 1)
+        fprintf(stderr, "each with all photons and ");
+    else if (plan->photons > 0)
+        fprintf(stderr, "each with %.0f %% of the photons and ", 100 * plan->photons);
+    fprintf(stderr, "%.2g samples a pixel, where the error is\n", plan->samples);
 }
 
 static void show_json(const RenderProgress *now, int percent)
@@ -54,6 +93,8 @@ static void show_json(const RenderProgress *now, int percent)
         fprintf(stderr, "\"pass\": %" PRIu64 ", ", now->pass);
     if (now->passes)
         fprintf(stderr, "\"passes\": %" PRIu64 ", ", now->passes);
+    if (now->error > 0)
+        fprintf(stderr, "\"error\": %.9g, ", now->error);
     fprintf(stderr, "\"phase\": \"%s\", \"percent\": %d, \"seconds_left\": ", now->phase, percent);
     json_number(stderr, now->seconds_left >= 0 ? now->seconds_left : NAN);
     fprintf(stderr, "}\n");
@@ -111,7 +152,7 @@ static void say_passes_json(const Args *args, const RenderResult *result, double
 }
 
 void progress_say_passes(const Progress *progress, const Args *args, const RenderResult *result,
-                         double seconds)
+                         double seconds, double error_wanted)
 {
     if (progress->kind == PROGRESS_NONE)
         return;
@@ -126,6 +167,8 @@ void progress_say_passes(const Progress *progress, const Args *args, const Rende
     if (result->error.is_known)
         fprintf(stderr, ", error %.3g %% (with 90 %% confidence below %.3g %%)",
                 100 * result->error.whole, 100 * result->error.bound);
+    if (result->error.is_known && result->error.bound > error_wanted && error_wanted > 0)
+        fprintf(stderr, ", above the %.3g %% wanted", 100 * error_wanted);
     fputs(", saved in", stderr);
     for (int i = 0; i < args->output_count; i++)
         fprintf(stderr, "%s '%s'", i ? "," : "", args->outputs[i]);

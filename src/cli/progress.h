@@ -25,11 +25,16 @@ Status progress_init(Progress *progress, const Args *args);
 /* The callback for RenderOptions. */
 void progress_show(void *ctx, const RenderProgress *now);
 
+/* Say what a render with a limit is going to do; the callback for ProgressiveOptions. */
+void progress_tell_plan(void *ctx, const SeriesPlan *plan);
+
 /* Clear the live line. */
 void progress_done(Progress *progress);
 
-/* Say how a progressive render ended: passes, seconds and where they were saved. */
+/* Say how a progressive render ended: passes, seconds, error and where they were saved.
+ *
+ * error_wanted  0: none was. */
 void progress_say_passes(const Progress *progress, const Args *args, const RenderResult *result,
-                         double seconds);
+                         double seconds, double error_wanted);
 
 #endif

@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -110,7 +111,8 @@ static Status render_loaded(Job *job, const RenderOptions *options)
     else if (status == ERR_INTERRUPTED)
         tell_interrupted(job, &result);
     else if (status == OK && written == OK && result.passes > 0)
-        progress_say_passes(&job->progress, job->args, &result, clock_wall() - start);
+        progress_say_passes(&job->progress, job->args, &result, clock_wall() - start,
+                            options->progressive.error);
     render_result_done(&result);
     return status != OK ? status : written;
 }
@@ -127,8 +129,13 @@ static Status prepare(Job *job, RenderOptions *options)
     TRY(progress_init(&job->progress, args));
     options->progress = progress_show;
     options->progress_ctx = &job->progress;
-    options->progressive.show = show_so_far;
+    options->progressive.show = args_has(args, OPT_PROGRESSIVE) ? show_so_far : NULL;
     options->progressive.show_ctx = job;
+    options->progressive.tell = progress_tell_plan;
+    options->progressive.tell_ctx = &job->progress;
+    if (options->progressive.seconds > 0) /* reading the scene is a part of it */
+        options->progressive.seconds =
+            fmax(1e-3, options->progressive.seconds - job->parse_seconds);
     return OK;
 }
 

@@ -78,8 +78,7 @@ static Status study_loaded(Job *job)
 {
     Study study;
     TRY(read_options(job));
-    Status status =
-        study_run(job->scene, &job->options, job->args->arena, job->args->diag, &study);
+    Status status = study_run(job->scene, &job->options, job->args->arena, job->args->diag, &study);
     progress_done(&job->progress);
     if (study.analysis.row_count > 0)
         status = tell(job, &study, status);

@@ -6,13 +6,12 @@
 
 #include "base/file.h"
 #include "base/mem.h"
-#include "image/error_counts.h"
 #include "image/exr.h"
 #include "image/flip.h"
+#include "image/percentile.h"
 #include "image/png_file.h"
 #include "image/ssim_int.h"
 #include "image/srgb.h"
-#include "math/rgb.h"
 
 #include <math.h>
 #include <string.h>
@@ -129,46 +128,25 @@ static void sum_errors(const float *a, const float *b, size_t pixels, CompareRes
     out->light_b = light_b * scale;
 }
 
-static Rgb light_at(const Colours *colours, size_t pixel)
+/* Linear colours; of display values, decoded. */
+static void decode_light(const Colours *colours, size_t pixels, float *out)
 {
-    const float *p = colours->rgb + 3 * pixel;
-    bool is_display = colours->is_display;
-    return rgb((float)light_of(p[0], is_display), (float)light_of(p[1], is_display),
-               (float)light_of(p[2], is_display));
+    for (size_t i = 0; i < 3 * pixels; i++)
+        out[i] = (float)light_of(colours->rgb[i], colours->is_display);
 }
 
-/* The mean luminance of the pixels that are numbers. */
-static double mean_light(const Colours *colours, size_t pixels)
+static Status find_error95(Diag *diag, const Colours *a, const Colours *reference, size_t pixels,
+                           double *out)
 {
-    double sum = 0;
-    size_t used = 0;
-    for (size_t i = 0; i < pixels; i++) {
-        Rgb light = light_at(colours, i);
-        sum += rgb_is_finite(light) ? (double)rgb_luminance(light) : 0;
-        used += rgb_is_finite(light);
+    float *light = mem_array(pixels, 6 * sizeof *light);
+    bool is_done = light != NULL;
+    if (is_done) {
+        decode_light(a, pixels, light);
+        decode_light(reference, pixels, light + 3 * pixels);
+        is_done = error_between(light, light + 3 * pixels, pixels, out);
     }
-    return used > 0 ? sum / (double)used : 0;
-}
-
-static Status find_error95(Diag *diag, const Colours *a, const Colours *reference, int width,
-                           int height, double *out)
-{
-    size_t pixels = (size_t)width * (size_t)height;
-    ErrorCounts *counts = error_counts_new();
-    if (!counts)
-        return diag_no_memory(diag, "a comparison");
-    double mean = mean_light(reference, pixels);
-    for (size_t i = 0; i < pixels; i++) {
-        Rgb one = light_at(a, i), other = light_at(reference, i);
-        double scale = error_scale((double)rgb_luminance(other), mean);
-        double error = fabs((double)rgb_luminance(rgb_sub(one, other)));
-        if (rgb_is_finite(one) && rgb_is_finite(other))
-            error_counts_add(counts, i % (size_t)width, i / (size_t)width,
-                             scale > 0 ? error / scale : error);
-    }
-    *out = error_counts_percentile(counts);
-    error_counts_free(counts);
-    return OK;
+    mem_free(light);
+    return is_done ? OK : diag_no_memory(diag, "a comparison");
 }
 
 /* Return the display-encoded luma of each pixel; what cannot be compared is black in both. */
@@ -253,7 +231,7 @@ Status image_compare(Diag *diag, const Image *a, const Image *reference, Compare
         status = find_ssim(diag, &ca, &cb, a->width, a->height, &out->ssim);
     }
     if (status == OK)
-        status = find_error95(diag, &ca, &cb, a->width, a->height, &out->error95);
+        status = find_error95(diag, &ca, &cb, (size_t)a->width * (size_t)a->height, &out->error95);
     if (status == OK)
         status = find_mean_flip(diag, &ca, &cb, a->width, a->height, &out->flip);
     mem_free(ca.rgb);

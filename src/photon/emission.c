@@ -470,7 +470,8 @@ Status emission_init(Emission *emission, const Tracer *tracer, MapKind map,
     if (emission->beam_count == 0)
         return OK;
     emission_set_keys(emission, 0);
-    double part = options->miniature ? options->miniature->photons : 1;
+    double part = options->part > 0 ? options->part : 1;
+    part *= options->miniature ? options->miniature->photons : 1;
     TRY(emission_pilot(emission, photons_wanted(emission, false)));
     return share_sources(emission, (uint64_t)ceil(part * photons_wanted(emission, true)));
 }

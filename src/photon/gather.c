@@ -97,6 +97,19 @@ static void find_excess(FoundPhotons *found, GatherKernel kernel, float radius2)
     }
 }
 
+/* Leave the photons within a part of the radius. */
+static void shrink(FoundPhotons *found, double part, float *radius2)
+{
+    size_t kept = 0;
+    *radius2 *= (float)(part * part);
+    for (size_t i = 0; i < found->count; i++)
+        if (found->distance2[i] < *radius2) {
+            found->distance2[kept] = found->distance2[i];
+            found->index[kept++] = found->index[i];
+        }
+    found->count = kept;
+}
+
 /* Find what an estimate is made of and replace squared distances by kernel weights over pi r^2.
  * Returns false when there is nothing. */
 static bool find_weights(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
@@ -104,6 +117,8 @@ static bool find_weights(const PhotonMap *map, V3 p, V3 n, const GatherLimits *l
 {
     float radius2;
     bool is_widened = photon_search(map, p, n, limits, scratch, &radius2);
+    if (limits->shrink > 0)
+        shrink(&scratch->found, limits->shrink, &radius2);
     if (!(radius2 > 0) || scratch->found.count == 0)
         return false;
     bool is_softened = is_widened && limits->kernel == KERNEL_FLAT;

@@ -12,7 +12,9 @@
  * what is far off least (Epanechnikov's kernel instead of none), so that a caustic does not spill
  * into the dark around it.  On a uniform field the mean of
  * every estimate is then the true irradiance, for any k (a flat sum of all k would be too bright
- * by k/(k-1)).  SPDX-License-Identifier: Apache-2.0 */
+ * by k/(k-1)).  So it is if only a part of the radius counts (shrink): where the k - 1 photons
+ * lie within the radius that the k-th sets is independent of it.
+ * SPDX-License-Identifier: Apache-2.0 */
 #ifndef PMS_PHOTON_GATHER_H
 #define PMS_PHOTON_GATHER_H
 
@@ -40,6 +42,7 @@ typedef struct GatherLimits {
                              is.  Above 0 those that arrived on the other side never count. */
     GatherSide side;      /* when normals are looked at; see gather_side */
     bool has_error;       /* errors are estimated too */
+    double shrink;        /* of the radius that was found only so much counts; 0: all of it */
 } GatherLimits;
 
 /* Return which photons count for the light of that side of a surface that n points to. */

@@ -1,7 +1,8 @@
 /* The state of a progressive render on disk.
  *
- * A header of fixed size, the settings as text, a checksum of both, the sums of the two halves, and
- * a checksum of everything; in the byte order of the machine.  SPDX-License-Identifier: Apache-2.0
+ * A header of fixed size, the settings as text, a checksum of both, the sums of the two halves, the
+ * plan, and a checksum of everything; in the byte order of the machine.  SPDX-License-Identifier:
+ * Apache-2.0
  */
 #include "render/checkpoint.h"
 
@@ -24,11 +25,12 @@ typedef struct Header {
     uint32_t byte_order, version;
     uint64_t settings_size;            /* bytes */
     uint64_t value_count, pixel_count; /* of a half */
-    uint64_t passes;
+    uint64_t passes, planned;          /* so far, and until the next plan */
+    uint64_t photon_rays, eye_rays;
     double caustic_radius, global_radius, volume_radius; /* of the first pass */
 } Header;
 
-static_assert(sizeof(Header) == 72, "the header has no holes");
+static_assert(sizeof(Header) == 96, "the header has no holes");
 
 /* --- settings ------------------------------------------------------------------------------- */
 
@@ -165,36 +167,40 @@ static void put_sum(Stream *out, const FilmSum *sum)
     put(out, sum->good, sum->pixels * sizeof *sum->good);
 }
 
-static void put_state(Stream *out, const char *settings, const PassRadii *first,
-                      const FilmSum halves[2])
+static void put_state(Stream *out, const char *settings, const SeriesState *state)
 {
+    const FilmSum *halves = state->halves;
     Header header = {.byte_order = BYTE_ORDER_MARK,
                      .version = FORMAT_VERSION,
                      .settings_size = strlen(settings),
                      .value_count = halves->count,
                      .pixel_count = halves->pixels,
-                     .passes = halves[0].passes + halves[1].passes,
-                     .caustic_radius = first->caustic,
-                     .global_radius = first->global,
-                     .volume_radius = first->volume};
+                     .passes = series_passes(state),
+                     .planned = state->steering.until,
+                     .photon_rays = state->photon_rays,
+                     .eye_rays = state->eye_rays,
+                     .caustic_radius = state->first.caustic,
+                     .global_radius = state->first.global,
+                     .volume_radius = state->first.volume};
     memcpy(header.magic, MAGIC, sizeof MAGIC);
     put(out, &header, sizeof header);
     put(out, settings, header.settings_size);
     put_hash(out);
     for (int i = 0; i < 2; i++)
         put_sum(out, &halves[i]);
+    put(out, state->steering.rate, halves->pixels * sizeof *state->steering.rate);
     put_hash(out);
 }
 
-Status checkpoint_write(Diag *diag, const char *path, const char *settings, const PassRadii *first,
-                        const FilmSum halves[2])
+Status checkpoint_write(Diag *diag, const char *path, const char *settings,
+                        const SeriesState *state)
 {
     OutFile out;
     TRY(out_begin(diag, path, &out));
     Stream stream = {.file = fopen(out.temp_path, "wb")};
     stream.is_good = stream.file != NULL;
     if (stream.file) {
-        put_state(&stream, settings, first, halves);
+        put_state(&stream, settings, state);
         int error = stream.is_good ? 0 : errno;
         stream.is_good = fclose(stream.file) == 0 && stream.is_good;
         errno = error ? error : errno;
@@ -272,7 +278,8 @@ static Status read_head(Reader *r)
         return damaged(r);
     size_t wanted =
         sizeof *header + header->settings_size + 2 * sizeof(uint64_t) +
-        2 * (header->value_count * sizeof(double) + 2 * header->pixel_count * sizeof(uint32_t));
+        2 * (header->value_count * sizeof(double) + 2 * header->pixel_count * sizeof(uint32_t)) +
+        header->pixel_count * sizeof(float);
     get(&r->in, r->settings, header->settings_size);
     if (!get_hash(&r->in))
         return r->size < wanted ? cut_short(r, wanted) : damaged(r);
@@ -281,8 +288,9 @@ static Status read_head(Reader *r)
     return r->size > wanted ? damaged(r) : OK;
 }
 
-static Status check_settings(const Reader *r, const char *settings, const FilmSum halves[2])
+static Status check_settings(const Reader *r, const char *settings, const SeriesState *state)
 {
+    const FilmSum *halves = state->halves;
     char difference[2 * CHECKPOINT_SETTINGS_MAX];
     if (strcmp(settings, r->settings) == 0)
         return r->header.value_count == halves->count && r->header.pixel_count == halves->pixels
@@ -301,17 +309,18 @@ static void get_sum(Stream *in, FilmSum *sum)
     get(in, sum->good, sum->pixels * sizeof *sum->good);
 }
 
-static Status read_state(Reader *r, const char *settings, FilmSum halves[2])
+static Status read_state(Reader *r, const char *settings, SeriesState *state)
 {
     TRY(read_head(r));
-    TRY(check_settings(r, settings, halves));
+    TRY(check_settings(r, settings, state));
     for (int i = 0; i < 2; i++)
-        get_sum(&r->in, &halves[i]);
+        get_sum(&r->in, &state->halves[i]);
+    get(&r->in, state->steering.rate, state->halves->pixels * sizeof *state->steering.rate);
     return get_hash(&r->in) ? OK : damaged(r);
 }
 
-Status checkpoint_read(Diag *diag, const char *path, const char *settings, PassRadii *first,
-                       FilmSum halves[2], bool *is_there)
+Status checkpoint_read(Diag *diag, const char *path, const char *settings, SeriesState *state,
+                       bool *is_there)
 {
     int fd;
     struct stat info;
@@ -325,13 +334,18 @@ Status checkpoint_read(Diag *diag, const char *path, const char *settings, PassR
         close(fd);
         return diag_no_memory(diag, path);
     }
-    Status status = read_state(&r, settings, halves);
+    Status status = read_state(&r, settings, state);
     fclose(r.in.file);
     if (status != OK)
         return status;
-    *first = (PassRadii){r.header.caustic_radius, r.header.global_radius, r.header.volume_radius};
+    const Header *header = &r.header;
+    state->first =
+        (PassRadii){header->caustic_radius, header->global_radius, header->volume_radius};
     /* The first half is a pass ahead when their number is odd. */
-    halves[0].passes = (r.header.passes + 1) / 2;
-    halves[1].passes = r.header.passes / 2;
+    state->halves[0].passes = (header->passes + 1) / 2;
+    state->halves[1].passes = header->passes / 2;
+    state->steering.until = header->planned;
+    state->photon_rays = header->photon_rays;
+    state->eye_rays = header->eye_rays;
     return OK;
 }

@@ -6,7 +6,7 @@
 #ifndef PMS_RENDER_CHECKPOINT_H
 #define PMS_RENDER_CHECKPOINT_H
 
-#include "render/film_sum.h"
+#include "render/series.h"
 
 enum { CHECKPOINT_SETTINGS_MAX = 2048 };
 
@@ -18,14 +18,14 @@ void checkpoint_describe(const Scene *scene, const RenderOptions *options,
 void checkpoint_difference(const char *there, const char *here, char *out, size_t size);
 
 /* Write the state.  On ERR_FILE the old one is as it was. */
-Status checkpoint_write(Diag *diag, const char *path, const char *settings, const PassRadii *first,
-                        const FilmSum halves[2]);
+Status checkpoint_write(Diag *diag, const char *path, const char *settings,
+                        const SeriesState *state);
 
-/* Read a state that was written with the same settings, for sums made for the same film.  Without
+/* Read a state that was written with the same settings, into one made for the same film.  Without
  * a file at `path`, *is_there is false and all else as it was.  ERR_FILE, after a message, for a
  * file that cannot be read, is cut short or damaged; ERR_USAGE for one of other settings: the
- * message says which.  The sums are then of no use. */
-Status checkpoint_read(Diag *diag, const char *path, const char *settings, PassRadii *first,
-                       FilmSum halves[2], bool *is_there);
+ * message says which.  The state is then of no use. */
+Status checkpoint_read(Diag *diag, const char *path, const char *settings, SeriesState *state,
+                       bool *is_there);
 
 #endif

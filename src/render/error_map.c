@@ -3,7 +3,7 @@
 
 #include "base/mem.h"
 #include "image/compare.h"
-#include "image/error_counts.h"
+#include "image/percentile.h"
 
 #include <string.h>
 
@@ -20,10 +20,11 @@ Status error_map_init(ErrorMap *map, const Film *film, Diag *diag)
     *map = (ErrorMap){.width = film->width, .height = film->height};
     map->noise = mem_array(pixels, sizeof(float));
     map->smooth = mem_array(pixels, sizeof(float));
+    map->caustic = mem_array(pixels, sizeof(float));
     map->bias = mem_array(pixels, sizeof(float));
     map->luminance = mem_array(pixels, sizeof(float));
     map->scratch = mem_array(pixels, sizeof(float));
-    if (map->noise && map->smooth && map->bias && map->luminance && map->scratch)
+    if (map->noise && map->smooth && map->caustic && map->bias && map->luminance && map->scratch)
         return OK;
     error_map_done(map);
     return diag_no_memory(diag, "the errors of the picture");
@@ -33,6 +34,7 @@ void error_map_done(ErrorMap *map)
 {
     mem_free(map->noise);
     mem_free(map->smooth);
+    mem_free(map->caustic);
     mem_free(map->bias);
     mem_free(map->luminance);
     mem_free(map->scratch);
@@ -100,9 +102,11 @@ static void finish_map(ErrorMap *map)
     size_t pixels = (size_t)map->width * (size_t)map->height;
     average_around(map->luminance, map->scratch, map->width, map->height, NOISE_REACH);
     average_around(map->smooth, map->scratch, map->width, map->height, NOISE_REACH);
+    average_around(map->caustic, map->scratch, map->width, map->height, NOISE_REACH);
     average_around(map->bias, map->scratch, map->width, map->height, BIAS_REACH);
     for (size_t i = 0; i < pixels; i++) {
         map->smooth[i] = sqrtf(map->smooth[i]);
+        map->caustic[i] = sqrtf(map->caustic[i]);
         map->bias[i] = map->bias[i] > 0 ? sqrtf(map->bias[i]) : 0;
     }
 }
@@ -120,7 +124,11 @@ void error_map_of_halves(const FilmSum halves[2], const Film *film, const SceneS
         double blur_b = half_clue(&halves[1], i, CLUE_BLUR);
         map->luminance[i] = (float)film_linear(settings, value);
         map->noise[i] = (float)noise;
+        double caustic_a = half_clue(&halves[0], i, CLUE_CAUSTIC);
+        double caustic_b = half_clue(&halves[1], i, CLUE_CAUSTIC);
+        double caustic = all > 0 ? half_difference(caustic_a, caustic_b, n_a, n_b) * slope : 0;
         map->smooth[i] = (float)(noise * noise);
+        map->caustic[i] = (float)(caustic * caustic);
         map->bias[i] = (float)(4 * blur_a * blur_b * slope * slope);
     }
     finish_map(map);
@@ -198,24 +206,7 @@ void error_map_of_film(const Film *film, int samples, const SceneSettings *setti
 
 /* --- figures -------------------------------------------------------------------------------- */
 
-typedef struct Counts {
-    ErrorCounts *whole, *noise, *bias;
-} Counts;
-
-static bool counts_init(Counts *counts)
-{
-    *counts = (Counts){error_counts_new(), error_counts_new(), error_counts_new()};
-    return counts->whole && counts->noise && counts->bias;
-}
-
-static void counts_done(Counts *counts)
-{
-    error_counts_free(counts->whole);
-    error_counts_free(counts->noise);
-    error_counts_free(counts->bias);
-}
-
-static double mean_luminance(const ErrorMap *map)
+double error_map_mean(const ErrorMap *map)
 {
     size_t pixels = (size_t)map->width * (size_t)map->height;
     double mean = 0;
@@ -224,35 +215,32 @@ static double mean_luminance(const ErrorMap *map)
     return mean;
 }
 
-/* The noise may add to the bias or take from it. */
-static void count_errors(const ErrorMap *map, Counts *counts)
+/* Fill an array with relative errors of so much of the noise and the bias; the one may add to the
+ * other or take from it. */
+static void fill_errors(const ErrorMap *map, double noise, double bias, float *out)
 {
     size_t width = (size_t)map->width, pixels = width * (size_t)map->height;
-    double mean = mean_luminance(map);
+    double mean = error_map_mean(map);
     for (size_t i = 0; i < pixels; i++) {
         double scale = error_scale((double)map->luminance[i], mean);
-        double noise = scale > 0 ? (double)map->noise[i] / scale : 0;
-        double bias = scale > 0 ? (double)map->bias[i] / scale : 0;
-        size_t x = i % width, y = i / width;
-        error_counts_add(counts->whole, x, y, fabs(noise + bias));
-        error_counts_add(counts->whole, x, y, fabs(noise - bias));
-        error_counts_add(counts->noise, x, y, fabs(noise));
-        error_counts_add(counts->bias, x, y, bias);
+        double sign = (i % width + i / width) % 2 ? -1 : 1;
+        double error = noise * (double)map->noise[i] + sign * bias * (double)map->bias[i];
+        out[i] = (float)(scale > 0 ? fabs(error) / scale : 0);
     }
 }
 
 ErrorFigure error_figure(const ErrorMap *map)
 {
-    Counts counts;
-    ErrorFigure figure = {.is_known = counts_init(&counts)};
-    if (figure.is_known) {
-        count_errors(map, &counts);
-        figure.whole = error_counts_percentile(counts.whole);
-        figure.bound = error_counts_bound(counts.whole);
-        figure.noise = error_counts_percentile(counts.noise);
-        figure.bias = error_counts_percentile(counts.bias);
-    }
-    counts_done(&counts);
+    size_t pixels = (size_t)map->width * (size_t)map->height;
+    float *errors = map->scratch;
+    ErrorFigure figure = {.is_known = true};
+    fill_errors(map, 1, 0, errors);
+    figure.noise = error_percentile(errors, pixels, ERROR_PERCENTILE);
+    fill_errors(map, 0, 1, errors);
+    figure.bias = error_percentile(errors, pixels, ERROR_PERCENTILE);
+    fill_errors(map, 1, 1, errors);
+    figure.whole = error_percentile(errors, pixels, ERROR_PERCENTILE);
+    figure.bound = error_bound(errors, map->width, map->height);
     return figure;
 }
 
@@ -271,7 +259,7 @@ static void show_layers(const ErrorMap *map, Image *picture)
 static void paint_errors(const ErrorMap *map, float *rgb_values)
 {
     size_t pixels = (size_t)map->width * (size_t)map->height;
-    double mean = mean_luminance(map);
+    double mean = error_map_mean(map);
     for (size_t i = 0; i < pixels; i++) {
         double error = hypot((double)map->smooth[i], (double)map->bias[i]);
         double scale = error_scale((double)map->luminance[i], mean);
@@ -293,9 +281,8 @@ static Status show_picture(const ErrorMap *map, Diag *diag, Image *out)
 }
 
 Status error_map_show(const ErrorMap *map, Image *picture, const RenderOptions *options, Diag *diag,
-                      RenderResult *out)
+                      Image *error_picture)
 {
-    out->error = error_figure(map);
     show_layers(map, picture);
-    return options->has_error_picture ? show_picture(map, diag, &out->error_picture) : OK;
+    return options->has_error_picture ? show_picture(map, diag, error_picture) : OK;
 }

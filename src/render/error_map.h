@@ -28,7 +28,8 @@ typedef struct ErrorMap {
     float *luminance; /* of the picture, averaged over neighbours */
     float *noise;  /* an error as chance may make it, of either sign */
     float *smooth; /* standard error, from the noise of the pixels around */
-    float *bias;   /* magnitude */
+    float *caustic; /* as smooth, of the light of the caustic map alone; 0 of a single pass */
+    float *bias;    /* magnitude */
     float *scratch;
 } ErrorMap;
 
@@ -45,12 +46,15 @@ void error_map_of_halves(const FilmSum halves[2], const Film *film, const SceneS
  * samples  of the pixels that have more than one. */
 void error_map_of_film(const Film *film, int samples, const SceneSettings *settings, ErrorMap *map);
 
-/* Return the figures of a map; not known when memory is out. */
+/* Return the mean luminance. */
+double error_map_mean(const ErrorMap *map);
+
+/* Return the figures of a map. */
 ErrorFigure error_figure(const ErrorMap *map);
 
-/* Put figures, layers and picture of the errors into a result, whose image has the layers that are
- * asked for. */
+/* Put the errors into the layers of a picture that show them, and make a picture of them if the
+ * options ask for one: made anew, or filled again. */
 Status error_map_show(const ErrorMap *map, Image *picture, const RenderOptions *options, Diag *diag,
-                      RenderResult *out);
+                      Image *error_picture);
 
 #endif

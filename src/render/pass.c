@@ -8,9 +8,13 @@
  * on another one: walls of a corner do not light each other. */
 #define GATHER_NORMAL_COSINE 0.5
 
-/* Photons within the gather radius of the first of many passes, where the map is of common
- * density (photon_map_radius).  Fewer than in a single pass: their noise is averaged away. */
+/* Photons that set the gather radius at a point in the first of many passes.  Fewer than in a
+ * single pass: their noise is averaged away. */
 enum { SERIES_PHOTONS = 12 };
+
+/* That radius is at most so many times what it is where the map is of common density
+ * (photon_map_radius). */
+#define SERIES_WIDEN 6
 
 /* Photons in the ball around one in a medium, across which its light is spread. */
 enum { VOLUME_PHOTONS = 30 };
@@ -71,18 +75,23 @@ static GatherLimits gather_limits(const Pass *pass, double radius, double far_ra
                           .has_error = pass->has_error};
 }
 
-/* The same for one pass of many: everything within the radius of the pass.
+/* The same for one pass of many: a part, smaller from pass to pass, of the radius that fits how
+ * dense photons are at the point, or of the one asked for.
  *
- * asked  radius of the first pass that the scene asks for; 0: from the density of the photons. */
+ * asked  radius of the first pass that the scene asks for; 0: none.
+ * first  of it, or where the map is of common density; found here if it is 0. */
 static GatherLimits series_limits(const Pass *pass, const PhotonMap *map, double asked,
                                   double *first)
 {
+    double part = pass->options->series->shrink;
+    const Miniature *miniature = pass->options->miniature;
     if (*first == 0 && map)
-        *first = asked > 0 ? miniature_radius(pass->options->miniature, asked)
-                           : photon_map_radius(
-                                 map, miniature_photons(pass->options->miniature, SERIES_PHOTONS));
-    GatherLimits limits = gather_limits(pass, *first * pass->options->series->shrink, 0);
-    limits.min_photons = limits.max_photons = 0;
+        *first = asked > 0 ? miniature_radius(miniature, asked)
+                           : photon_map_radius(map, miniature_photons(miniature, SERIES_PHOTONS));
+    GatherLimits limits = gather_limits(pass, asked > 0 ? part * *first : SERIES_WIDEN * *first, 0);
+    limits.min_photons = 0;
+    limits.max_photons = asked > 0 ? 0 : miniature_photons(miniature, SERIES_PHOTONS) + 1;
+    limits.shrink = asked > 0 ? 0 : part;
     return limits;
 }
 
@@ -128,6 +137,7 @@ static Status make_maps(Pass *pass)
         return OK;
     const PassSeries *series = pass->options->series;
     PhotonOptions options = pass_photon_options(pass->options->render, pass->options->photon_seed);
+    options.part = series ? series->photon_part : 0;
     options.has_radii = series != NULL;
     options.is_repeat = (series && series->is_repeat) || pass->options->miniature;
     options.miniature = pass->options->miniature;

@@ -9,6 +9,7 @@
  * of them, so that the estimate is that of a fixed kernel and the mean over passes is right. */
 typedef struct PassSeries {
     double shrink;         /* gather radius over that of the first pass */
+    double photon_part;    /* of the photons the scene asks for */
     bool is_repeat;        /* a pass has been run before: what there is to warn of was said */
     PassRadii *first;      /* gather radii of the first pass; those that are 0 are found, from the
                               density of the photons, and set */

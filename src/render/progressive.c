@@ -20,9 +20,10 @@
 #include "base/work.h"
 #include "base/mem.h"
 #include "render/checkpoint.h"
-#include "render/error_map.h"
-#include "render/film_sum.h"
+#include "render/pace.h"
 #include "render/pass.h"
+
+#include <string.h>
 
 /* Names the seeds of the photons of passes, and of the samples of halves. */
 enum { SERIES_RNG = 0x736572, HALF_RNG = 0x68616c };
@@ -32,6 +33,12 @@ enum { SERIES_RNG = 0x736572, HALF_RNG = 0x68616c };
 
 /* From this pass on the product of the factors is had in closed form. */
 enum { SERIES_FAR = 4096 };
+
+/* The passes before samples first go where errors are. */
+enum { FIRST_PLAN = 4 };
+
+/* What writing the picture takes, seconds for a pixel, before it is known. */
+#define ENDING_SECONDS 4e-7
 
 /* The picture so far is shown after passes 1, 2, 4, 8 ... and when it has not been for so long, or
  * so many times as long as showing it takes. */
@@ -45,12 +52,15 @@ typedef struct Series {
     Diag *diag;
     RenderResult *out;
     Film film; /* of a pass */
-    FilmSum halves[2];
+    SeriesState state;
     Film shown; /* the picture, of layers that were asked for */
     ErrorMap errors;
-    PassRadii first;                /* gather radii of the first pass */
-    uint64_t passes_asked;          /* stop after so many */
-    double started, passes_started; /* seconds of clock_wall */
+    uint64_t measured_at; /* passes that the errors are known of */
+    bool is_steered;      /* samples go where errors are */
+    bool is_told;         /* what is going to be done */
+    Pace pace;
+    uint64_t passes_asked; /* stop after so many */
+    double passes_started; /* seconds of clock_wall */
     double last_shown, show_cost;
     uint64_t last_shown_pass;
     char settings[CHECKPOINT_SETTINGS_MAX];
@@ -79,7 +89,7 @@ double progressive_shrink(uint64_t pass)
 
 static uint64_t passes_done(const Series *s)
 {
-    return s->halves[0].passes + s->halves[1].passes;
+    return series_passes(&s->state);
 }
 
 static PassRadii scaled(PassRadii radii, double factor)
@@ -89,18 +99,33 @@ static PassRadii scaled(PassRadii radii, double factor)
 
 /* --- progress ------------------------------------------------------------------------------- */
 
-/* Return the seconds until the last pass is done, or a negative number. */
-static double seconds_left(const Series *s, double pass_fraction)
+/* Return how far the way to the goal is gone, or a negative number if there is none: passes,
+ * seconds, and with an error wanted the work, which goes as one over its square. */
+static double fraction_done(const Series *s, double pass_fraction)
 {
-    const ProgressiveOptions *progressive = &s->asked->progressive;
-    double now = clock_wall(), done = (double)s->out->new_passes + pass_fraction;
-    double left = INFINITY;
-    if (progressive->passes && done > 0.01) {
-        double to_do = (double)(s->passes_asked - passes_done(s)) - pass_fraction;
-        left = (now - s->passes_started) / done * to_do;
+    const ProgressiveOptions *wanted = &s->asked->progressive;
+    double passes = (double)passes_done(s) + pass_fraction, fraction = -1;
+    if (wanted->passes)
+        fraction = passes / (double)s->passes_asked;
+    if (wanted->seconds > 0)
+        fraction = fmax(fraction, (clock_wall() - s->pace.started) / wanted->seconds);
+    if (wanted->error > 0 && s->out->error.is_known) {
+        double part = wanted->error / s->out->error.bound;
+        fraction = fmax(fraction, part * part * passes / (double)s->measured_at);
     }
-    if (progressive->seconds > 0)
-        left = fmin(left, fmax(0, s->started + progressive->seconds - now));
+    return fraction;
+}
+
+/* Return the seconds until the goal is reached, or a negative number. */
+static double seconds_left(const Series *s, double fraction, double pass_fraction)
+{
+    double left = INFINITY, now = clock_wall();
+    double passes = (double)passes_done(s) + pass_fraction;
+    double fresh = (double)s->out->new_passes + pass_fraction;
+    if (fresh > 0.01 && fraction > 0)
+        left = (now - s->passes_started) / fresh * passes * fmax(0, 1 / fraction - 1);
+    if (s->pace.seconds > 0)
+        left = fmin(left, fmax(0, s->pace.started + s->pace.seconds - now));
     return isfinite(left) ? left : -1;
 }
 
@@ -108,14 +133,20 @@ static double seconds_left(const Series *s, double pass_fraction)
 static void report_pass(void *ctx, const RenderProgress *of_pass)
 {
     Series *s = ctx;
+    const ProgressiveOptions *wanted = &s->asked->progressive;
     RenderProgress progress = *of_pass;
     bool is_eye = of_pass->phase[0] == 'e' && pass_needs_photons(tracer_plan(s->tracer));
-    double fraction = of_pass->fraction;
+    double part = of_pass->fraction;
     if (pass_needs_photons(tracer_plan(s->tracer)))
-        fraction = fraction / 2 + (is_eye ? 0.5 : 0);
+        part = part / 2 + (is_eye ? 0.5 : 0);
+    double fraction = fraction_done(s, part);
     progress.pass = passes_done(s) + 1;
-    progress.passes = s->asked->progressive.passes;
-    progress.seconds_left = seconds_left(s, fraction);
+    progress.passes = wanted->passes;
+    progress.seconds_left = seconds_left(s, fraction, part);
+    progress.error = s->out->error.is_known ? s->out->error.bound : 0;
+    progress.error_wanted = wanted->error;
+    if (s->is_steered && fraction >= 0)
+        progress.fraction = fmin(fraction, 1 - 0x1p-20);
     s->asked->progress(s->asked->progress_ctx, &progress);
 }
 
@@ -124,22 +155,31 @@ static void report_pass(void *ctx, const RenderProgress *of_pass)
 static Status keep_state(Series *s)
 {
     const char *path = s->asked->progressive.state_path;
-    return path ? checkpoint_write(s->diag, path, s->settings, &s->first, s->halves) : OK;
+    return path ? checkpoint_write(s->diag, path, s->settings, &s->state) : OK;
+}
+
+/* Find the errors of the passes done, unless they are known. */
+static void measure(Series *s)
+{
+    if (s->measured_at == passes_done(s) || s->state.halves[1].passes == 0)
+        return;
+    error_map_of_halves(s->state.halves, &s->film, &tracer_scene(s->tracer)->settings, &s->errors);
+    s->out->error = error_figure(&s->errors);
+    s->measured_at = passes_done(s);
 }
 
 /* Make the picture of the passes done. */
 static Status make_picture(Series *s)
 {
-    const SceneSettings *settings = &tracer_scene(s->tracer)->settings;
     Image *picture = &s->shown.image;
-    film_sum_mean(s->halves, 2, picture);
-    film_linearize(picture, settings);
+    film_sum_mean(s->state.halves, 2, picture);
+    film_linearize(picture, &tracer_scene(s->tracer)->settings);
     s->out->passes = passes_done(s);
-    s->out->first_radii = s->first;
-    if (s->halves[1].passes == 0)
+    s->out->first_radii = s->state.first;
+    measure(s);
+    if (!s->out->error.is_known)
         return OK;
-    error_map_of_halves(s->halves, &s->film, settings, &s->errors);
-    return error_map_show(&s->errors, picture, s->asked, s->diag, s->out);
+    return error_map_show(&s->errors, picture, s->asked, s->diag, &s->out->error_picture);
 }
 
 static Status show(Series *s)
@@ -156,6 +196,7 @@ static Status show(Series *s)
     }
     s->last_shown = clock_wall();
     s->show_cost = s->last_shown - begun;
+    s->pace.ending = s->show_cost;
     s->last_shown_pass = passes_done(s);
     return OK;
 }
@@ -183,17 +224,83 @@ static Status show_if_due(Series *s)
     return OK;
 }
 
+/* --- steering ------------------------------------------------------------------------------- */
+
+/* Return the rays of a pass's photons as a number of samples that are as many rays; 0 before the
+ * first pass. */
+static double photon_work(const SeriesState *state)
+{
+    double samples = 0, passes = (double)series_passes(state);
+    for (int h = 0; h < 2; h++)
+        for (size_t i = 0; i < state->halves[h].pixels; i++)
+            samples += state->halves[h].taken[i];
+    double a_sample = samples > 0 ? (double)state->eye_rays / samples : 0;
+    return a_sample > 0 && passes > 0 ? (double)state->photon_rays / passes / a_sample : 0;
+}
+
+/* Return how many more passes there is time for, as they are now; infinite without a limit. */
+static double passes_affordable(const Series *s)
+{
+    double samples = steering_samples(&s->state.steering);
+    return fmax(0, pace_left(&s->pace) / pace_pass_seconds(&s->pace, samples));
+}
+
+static bool is_error_reached(const Series *s)
+{
+    double wanted = s->asked->progressive.error;
+    return wanted > 0 && s->out->error.is_known && s->out->error.bound <= wanted;
+}
+
+/* Say once, when something is known, what is going to be done. */
+static void tell_plan(Series *s)
+{
+    const ProgressiveOptions *wanted = &s->asked->progressive;
+    double samples = steering_samples(&s->state.steering), error = s->out->error.bound;
+    double passes = fmin((double)s->passes_asked, (double)passes_done(s) + passes_affordable(s));
+    if (wanted->error > 0)
+        passes = fmin(passes, (double)passes_done(s) * pow(error / wanted->error, 2));
+    SeriesPlan plan = {.passes = passes,
+                       .seconds = pace_pass_seconds(&s->pace, samples),
+                       .photons =
+                           pass_needs_photons(tracer_plan(s->tracer)) ? s->pace.photon_part : 0,
+                       .samples = samples / (double)s->state.steering.pixels,
+                       .error = error,
+                       .passes_so_far = passes_done(s)};
+    if (wanted->tell && !s->is_told)
+        wanted->tell(wanted->tell_ctx, &plan);
+    s->is_told = true;
+}
+
+/* Plan the passes to come, if that is due. */
+static void plan_passes(Series *s)
+{
+    if (!s->is_steered || passes_done(s) < s->state.steering.until)
+        return;
+    measure(s);
+    if (!s->out->error.is_known || is_error_reached(s))
+        return;
+    SteeringGoal goal = {.error = s->asked->progressive.error,
+                         .photon_work = photon_work(&s->state),
+                         .passes_left = passes_affordable(s)};
+    steering_plan(&s->state.steering, &s->errors, s->state.halves, &s->out->error, passes_done(s),
+                  &goal);
+    tell_plan(s);
+}
+
 /* --- passes --------------------------------------------------------------------------------- */
 
-static bool is_over(const Series *s)
+/* Passes that are made in any case: with one of each half errors are known, and every pixel is
+ * there. */
+enum { PASSES_SURE = 2 };
+
+/* Return how much of the next pass is to be made; 0: none of it. */
+static double next_part(const Series *s)
 {
-    const ProgressiveOptions *progressive = &s->asked->progressive;
-    if (work_ending || passes_done(s) >= s->passes_asked)
-        return true;
-    if (!(progressive->seconds > 0) || s->out->new_passes == 0)
-        return false;
-    double now = clock_wall(), a_pass = (now - s->passes_started) / (double)s->out->new_passes;
-    return now + a_pass - s->started > progressive->seconds;
+    if (work_ending || passes_done(s) >= s->passes_asked || is_error_reached(s))
+        return 0;
+    if (passes_done(s) < (s->is_steered ? PASSES_SURE : 1))
+        return 1;
+    return s->is_steered ? pace_part(&s->pace, steering_samples(&s->state.steering)) : 1;
 }
 
 /* The seed of what the eye draws at random in a half: its samples are those of a series of their
@@ -204,40 +311,90 @@ static uint64_t half_seed(const Series *s, uint64_t half)
     return rng_u64(&rng);
 }
 
-static Status run_pass(Series *s)
+static uint64_t eye_rays(const Stats *stats)
 {
-    uint64_t number = passes_done(s);
-    FilmSum *half = &s->halves[number % 2];
-    PassResult result;
+    return stats->count[STAT_CAMERA_RAYS] + stats->count[STAT_REFLECTED_RAYS] +
+           stats->count[STAT_REFRACTED_RAYS] + stats->count[STAT_DIFFUSE_RAYS] +
+           stats->count[STAT_SHADOW_RAYS];
+}
+
+/* Make pass `number` of so many of the photons onto the film, whose samples are set, and learn what
+ * it takes. */
+static Status make_pass(Series *s, uint64_t number, double photon_part, PassRadii *first,
+                        Stats *stats, PassResult *out)
+{
     Rng seed = rng_at(s->asked->seed, SERIES_RNG, number);
     PassSeries series = {.shrink = progressive_shrink(number + 1),
+                         .photon_part = photon_part,
                          .is_repeat = s->out->new_passes > 0,
-                         .first = &s->first};
+                         .first = first};
     PassOptions pass = {&s->options, rng_u64(&seed), &series, NULL};
     s->options.seed = half_seed(s, number % 2);
+    TRY(pass_render(s->tracer, &pass, s->diag, stats, &s->film, out));
+    pace_learn(&s->pace, stats->seconds, photon_part, (double)stats->count[STAT_SAMPLES]);
+    return OK;
+}
+
+/* Make a part of the next pass. */
+static Status run_pass(Series *s, double part)
+{
+    uint64_t number = passes_done(s);
+    SeriesState *state = &s->state;
+    FilmSum *half = &state->halves[number % 2];
+    PassResult result;
+    Stats stats = {.count = {0}};
+    steering_deal(&state->steering, number, part, &s->film);
     film_sum_follow(half, &s->film);
-    TRY(pass_render(s->tracer, &pass, s->diag, &s->out->stats, &s->film, &result));
+    TRY(make_pass(s, number, part * s->pace.photon_part, &state->first, &stats, &result));
     film_sum_add(half, &s->film);
+    state->photon_rays += stats.count[STAT_PHOTON_RAYS];
+    state->eye_rays += eye_rays(&stats);
+    stats_add(&s->out->stats, &stats);
     photon_books_add(&s->out->books, &result.books, s->out->new_passes);
     s->out->caustic_hash = result.caustic_hash;
     s->out->global_hash = result.global_hash;
     s->out->volume_hash = result.volume_hash;
-    s->out->last_radii = scaled(s->first, series.shrink);
+    s->out->last_radii = scaled(state->first, progressive_shrink(number + 1));
     s->out->new_passes++;
     s->out->stats.count[STAT_PIXELS] = (uint64_t)s->film.width * (uint64_t)s->film.height;
     pass_result_done(&result);
     return OK;
 }
 
+/* A trial tells what a pass takes: so much of one, for so many of the photons. */
+#define TRIAL_SAMPLES 0.0625
+#define TRIAL_PHOTONS 0.1
+
+/* With a limit of time, find out what passes take, and how many photons there can be in each. */
+static Status try_pass(Series *s)
+{
+    if (!(s->pace.seconds > 0))
+        return OK;
+    PassResult result;
+    PassRadii radii = s->state.first;
+    Stats stats = {.count = {0}};
+    steering_deal(&s->state.steering, 0, TRIAL_SAMPLES, &s->film);
+    film_sum_follow(&s->state.halves[0], &s->film);
+    TRY(make_pass(s, passes_done(s), TRIAL_PHOTONS, &radii, &stats, &result));
+    pass_result_done(&result);
+    for (int i = 0; i < PHASE_COUNT; i++)
+        s->out->stats.seconds[i] += stats.seconds[i];
+    pace_fit_photons(&s->pace, steering_samples(&s->state.steering));
+    return OK;
+}
+
 /* Run passes; ERR_INTERRUPTED when somebody ended them, with whole passes in the sum. */
 static Status run_passes(Series *s)
 {
-    Status status = OK;
+    double part;
     s->passes_started = s->last_shown = clock_wall();
     work_is_patient = 1;
-    while (status == OK && !is_over(s)) {
-        status = run_pass(s);
-        if (status == OK && !is_over(s))
+    Status status = try_pass(s);
+    while (status == OK && (part = next_part(s)) > 0) {
+        status = run_pass(s, part);
+        if (status == OK)
+            plan_passes(s);
+        if (status == OK && next_part(s) > 0)
             status = show_if_due(s);
     }
     work_is_patient = 0;
@@ -258,7 +415,7 @@ static void set_options(Series *s)
         s->options.progress_ctx = s;
     }
     /* The samples of a pixel are numbered by 32 bits. */
-    uint64_t most = UINT32_MAX / (uint64_t)s->options.samples;
+    uint64_t most = UINT32_MAX / (uint64_t)fmax(s->options.samples, STEERING_RATE_MOST);
     uint64_t asked = s->asked->progressive.passes;
     s->passes_asked = asked && asked < most ? asked : most;
 }
@@ -270,14 +427,13 @@ static Status resume(Series *s)
     if (!progressive->is_resumed)
         return OK;
     bool is_there;
-    TRY(checkpoint_read(s->diag, progressive->state_path, s->settings, &s->first, s->halves,
-                        &is_there));
+    TRY(checkpoint_read(s->diag, progressive->state_path, s->settings, &s->state, &is_there));
     if (!is_there)
         diag_warn(s->diag, WARN_FILE, SPAN_NONE,
                   "there is no '%s' to resume from: starting with the first pass",
                   progressive->state_path);
     s->last_shown_pass = passes_done(s);
-    s->out->last_radii = scaled(s->first, progressive_shrink(passes_done(s)));
+    s->out->last_radii = scaled(s->state.first, progressive_shrink(passes_done(s)));
     if (passes_done(s) > s->passes_asked)
         diag_warn(s->diag, WARN_FILE, SPAN_NONE,
                   "'%s' has %llu passes already: the picture is of these", progressive->state_path,
@@ -309,11 +465,7 @@ static Status make_films(Series *s)
     s->film.samples = mem_array(pixels, sizeof *s->film.samples);
     if (!s->film.samples)
         return diag_no_memory(s->diag, "the samples of pixels");
-    for (size_t i = 0; i < pixels; i++)
-        s->film.samples[i].wanted = (uint16_t)s->options.samples;
-    for (int i = 0; i < 2; i++)
-        TRY(film_sum_init(&s->halves[i], &s->film, s->diag));
-    return OK;
+    return series_state_init(&s->state, &s->film, (float)s->options.samples, FIRST_PLAN, s->diag);
 }
 
 static Status run_series(Series *s)
@@ -333,11 +485,14 @@ Status progressive_render(const Tracer *tracer, const RenderOptions *options, do
                 .options = *options,
                 .diag = diag,
                 .out = out,
-                .started = started};
+                .is_steered = options->progressive.seconds > 0 || options->progressive.error > 0,
+                .pace = {.seconds = options->progressive.seconds,
+                         .started = started,
+                         .ending = ENDING_SECONDS * options->width * options->height,
+                         .photon_part = 1}};
     set_options(&s);
     Status status = run_series(&s);
-    for (int i = 0; i < 2; i++)
-        film_sum_done(&s.halves[i]);
+    series_state_done(&s.state);
     error_map_done(&s.errors);
     mem_free(s.film.samples);
     film_done(&s.film);

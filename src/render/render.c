@@ -52,9 +52,10 @@ static Status show_film(const Scene *scene, const RenderOptions *options, Film *
     TRY(error_map_init(&errors, film, diag));
     error_map_of_film(film, samples_of(options), &scene->settings, &errors);
     film_linearize(&film->image, &scene->settings);
+    out->error = error_figure(&errors);
     Status status = film_show_errors(film, diag);
     if (status == OK)
-        status = error_map_show(&errors, &film->image, options, diag, out);
+        status = error_map_show(&errors, &film->image, options, diag, &out->error_picture);
     error_map_done(&errors);
     return status;
 }

@@ -21,7 +21,19 @@ typedef struct RenderProgress {
     double seconds_left; /* estimate for the phase, or all passes; negative: unknown */
     uint64_t pass;       /* of a progressive render, from 1; else 0 */
     uint64_t passes;     /* to be made in all; 0: unknown */
+    double error, error_wanted; /* of a progressive render, as last known; 0: unknown, not asked */
 } RenderProgress;
+
+/* What a progressive render is going to do, as far as is known after its first passes. */
+typedef struct SeriesPlan {
+    double passes;          /* in all, about; infinite: no limit */
+    double seconds;         /* of a pass */
+    double photons;         /* part of those that the scene asks for, in each pass */
+    double samples;         /* of a pixel in each pass */
+    double error;           /* now */
+    uint64_t passes_so_far;
+} SeriesPlan;
+
 
 /* Gather radii, scene units; 0: there was no map. */
 typedef struct PassRadii {
@@ -44,12 +56,17 @@ typedef struct RenderResult RenderResult;
  * of one pass. */
 typedef struct ProgressiveOptions {
     uint64_t passes;        /* in all, with those of runs before; 0: no limit */
-    double seconds;         /* no pass is begun that would end later; 0: no limit */
+    double seconds;         /* for all of the render, which are used up; 0: no limit */
+    double error;           /* stop when the bound of the relative error is below; 0: no limit.
+                               With this or seconds, samples go where the errors are */
     const char *state_path; /* where the sums of passes are kept; NULL: nowhere */
     bool is_resumed;        /* go on from the state kept there, if there is one */
     /* Called with the picture so far now and then; it may fail now and succeed later. */
     Status (*show)(void *ctx, RenderResult *so_far);
     void *show_ctx;
+    void (*tell)(void *ctx, const SeriesPlan *plan); /* called once, if there is a limit by time or
+                                                        error; or NULL */
+    void *tell_ctx;
 } ProgressiveOptions;
 
 typedef struct RenderOptions {

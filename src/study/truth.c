@@ -4,9 +4,9 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "image/compare.h"
-#include "image/error_counts.h"
 #include "image/exr.h"
 #include "image/flip.h"
+#include "image/percentile.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -101,35 +101,11 @@ static Status find_flip(Diag *diag, const Truth *truth, const float *colours, do
     return is_good ? OK : diag_no_memory(diag, "a comparison");
 }
 
-static double luminance(const float *rgb)
-{
-    return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
-}
-
-static Status find_percentile(Diag *diag, const Truth *truth, const float *colours, double *out)
-{
-    ErrorCounts *counts = error_counts_new();
-    size_t width = (size_t)truth->width, pixels = pixels_of(truth);
-    double mean = 0;
-    if (!counts)
-        return diag_no_memory(diag, "a comparison");
-    for (size_t i = 0; i < pixels; i++)
-        mean += luminance(truth->mean + 3 * i) / (double)pixels;
-    for (size_t i = 0; i < pixels; i++) {
-        double wanted = luminance(truth->mean + 3 * i), scale = error_scale(wanted, mean);
-        double error = fabs(luminance(colours + 3 * i) - wanted) / scale;
-        if (isfinite(error))
-            error_counts_add(counts, i % width, i / width, error);
-    }
-    *out = error_counts_percentile(counts);
-    error_counts_free(counts);
-    return OK;
-}
-
 /* Find the errors that are not means of products. */
 static Status find_seen(Diag *diag, const Truth *truth, const float *colours, TruthError *out)
 {
-    TRY(find_percentile(diag, truth, colours, &out->percentile));
+    if (!error_between(colours, truth->mean, pixels_of(truth), &out->percentile))
+        return diag_no_memory(diag, "a comparison");
     return find_flip(diag, truth, colours, &out->flip);
 }
 

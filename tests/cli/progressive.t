@@ -126,7 +126,7 @@ fails 3 "cannot write '.*full.exr.pmsstate'" "a full disk" sh -c "ulimit -f 60; 
 ok $? "leaves nothing half-written"
 fails 3 "cannot write" "a folder that is not there" $P --passes=2 -o "$T/none/a.exr"
 
-for option in --passes=3 --time=3 --resume; do
+for option in --passes=3 --resume; do
     fails 2 "${option%=3} wants --progressive" "$option alone" "$PMS" "$T/s.pms" $option -o "$T/a.exr"
 done
 fails 2 "whole number from 1" "no passes" $P --passes=0 -o "$T/a.exr"
@@ -134,6 +134,24 @@ for time in 0 -1 5x 3mm m nan 1e30d ''; do
     fails 2 "a time such as|wants T after it .*90s" "--time='$time'" $P --time="$time" -o "$T/a.exr"
 done
 fails 2 "\+A has no meaning" "+A" $P +A0.1 -o "$T/a.exr"
+for error in 0% -1% 2 x% 200% nan% 1%%; do
+    fails 2 "a percentage" "--error='$error'" "$PMS" "$T/s.pms" --error="$error" -o "$T/a.exr"
+done
+
+# An error that is wanted: reached, or said not to be; whole pictures without a state; the same
+# bytes on any number of threads.
+for threads in 1 3; do
+    run "$PMS" "$T/s.pms" -w 64 --height=48 --error=30% --threads=$threads -o "$T/error$threads.exr" --stats="$T/error.json"
+done
+[ "$code" -eq 0 ] && grep -qE "^pms: error [0-9.]+ % after 4 passes; the plan: about [0-9]+ passes" "$T/err" &&
+    grep -qE "^pms: [0-9]+ passes in .* s, error [0-9.]+ % \(with 90 % confidence below (30|[12][0-9.]*|[3-9]\.[0-9]+) %\), saved" "$T/err" &&
+    [ ! -e "$T/error3.exr.pmsstate" ]
+ok $? "an error wanted is reached"
+"$PMS" compare "$T/error1.exr" "$T/error3.exr" --max-rmse=0 >/dev/null
+ok $? "on any number of threads by the same bytes"
+run $P --error=1% --passes=6 -o "$T/above.exr"
+[ "$code" -eq 0 ] && grep -q "above the 1 % wanted, saved" "$T/err"
+ok $? "or it says that it is not"
 run "$PMS" explain "$T/s.pms" --progressive --passes=100 --time=2m
 [ "$code" -eq 0 ] && grep -q "^passes: 100, or what fits into 120 s; 1 sample a pixel in each, and these photons; the last gather radius is 0.488 of the first" "$T/out" &&
     grep -qE "^progressive +asked for on the command line" "$T/out"

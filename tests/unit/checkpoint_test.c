@@ -35,33 +35,25 @@ static Film make_film(unsigned layers)
     return film;
 }
 
-/* The two halves of a picture. */
-typedef struct Halves {
-    FilmSum sum[2];
-} Halves;
-
-static Halves make_halves(unsigned layers)
+static SeriesState make_state(unsigned layers)
 {
-    Halves halves;
+    SeriesState made;
     Film film = make_film(layers);
-    for (int i = 0; i < 2; i++)
-        assert_int_equal(film_sum_init(&halves.sum[i], &film, NULL), OK);
+    assert_int_equal(series_state_init(&made, &film, 1, 4, NULL), OK);
     film_done(&film);
-    return halves;
+    return made;
 }
 
-static void halves_done(Halves *halves)
+/* A state of some passes, of all kinds of values. */
+static SeriesState some_state(void)
 {
-    for (int i = 0; i < 2; i++)
-        film_sum_done(&halves->sum[i]);
-}
-
-/* Sums of some passes, of all kinds of values. */
-static Halves some_halves(void)
-{
-    Halves halves = make_halves(LAYER_Z);
+    SeriesState made = make_state(LAYER_Z);
+    made.first = RADII;
+    made.photon_rays = UINT64_MAX - 3;
+    made.eye_rays = 5;
+    made.steering.until = 44;
     for (int h = 0; h < 2; h++) {
-        FilmSum *sum = &halves.sum[h];
+        FilmSum *sum = &made.halves[h];
         for (size_t i = 0; i < sum->count; i++)
             sum->values[i] = i % 7 == 0   ? INFINITY
                              : i % 3 == 0 ? -1e-310
@@ -69,18 +61,19 @@ static Halves some_halves(void)
         for (uint32_t i = 0; i < PIXELS; i++) {
             sum->taken[i] = 100 * i + (uint32_t)h;
             sum->good[i] = UINT32_MAX - i;
+            made.steering.rate[i] = 1.0f / (float)(i + 1);
         }
         sum->passes = h ? 12 : 13;
     }
-    return halves;
+    return made;
 }
 
 static const char *write_state(const char *name)
 {
-    Halves halves = some_halves();
+    SeriesState made = some_state();
     const char *path = in_folder(name);
-    assert_int_equal(checkpoint_write(quiet(), path, SETTINGS, &RADII, halves.sum), OK);
-    halves_done(&halves);
+    assert_int_equal(checkpoint_write(quiet(), path, SETTINGS, &made), OK);
+    series_state_done(&made);
     return path;
 }
 
@@ -88,12 +81,11 @@ static const char *write_state(const char *name)
 static Status read_state(const char *path, const char *settings)
 {
     bool is_there;
-    PassRadii radii;
-    Halves halves = make_halves(LAYER_Z);
-    Status status = checkpoint_read(quiet(), path, settings, &radii, halves.sum, &is_there);
+    SeriesState made = make_state(LAYER_Z);
+    Status status = checkpoint_read(quiet(), path, settings, &made, &is_there);
     if (status != OK)
-        assert_int_equal(halves.sum[0].passes + halves.sum[1].passes, 0);
-    halves_done(&halves);
+        assert_int_equal(series_passes(&made), 0);
+    series_state_done(&made);
     return status;
 }
 
@@ -101,35 +93,36 @@ static void what_is_read_is_what_was_written(void **state)
 {
     (void)state;
     bool is_there = false;
-    PassRadii radii;
-    Halves halves = make_halves(LAYER_Z), expected = some_halves();
+    SeriesState read = make_state(LAYER_Z), expected = some_state();
     const char *path = write_state("good");
-    assert_int_equal(checkpoint_read(quiet(), path, SETTINGS, &radii, halves.sum, &is_there), OK);
+    assert_int_equal(checkpoint_read(quiet(), path, SETTINGS, &read, &is_there), OK);
     assert_true(is_there);
-    assert_memory_equal(&radii, &RADII, sizeof radii);
+    assert_memory_equal(&read.first, &RADII, sizeof RADII);
+    assert_int_equal(read.photon_rays, UINT64_MAX - 3);
+    assert_int_equal(read.eye_rays, 5);
+    assert_int_equal(read.steering.until, 44);
+    assert_memory_equal(read.steering.rate, expected.steering.rate, PIXELS * sizeof(float));
     for (int i = 0; i < 2; i++) {
-        FilmSum *sum = &halves.sum[i], *wanted = &expected.sum[i];
+        FilmSum *sum = &read.halves[i], *wanted = &expected.halves[i];
         assert_int_equal(sum->passes, wanted->passes);
         assert_memory_equal(sum->values, wanted->values, sum->count * sizeof *sum->values);
         assert_memory_equal(sum->taken, wanted->taken, PIXELS * sizeof *sum->taken);
         assert_memory_equal(sum->good, wanted->good, PIXELS * sizeof *sum->good);
     }
-    halves_done(&halves);
-    halves_done(&expected);
+    series_state_done(&read);
+    series_state_done(&expected);
 }
 
 static void no_file_is_no_error(void **state)
 {
     (void)state;
     bool is_there = true;
-    PassRadii radii = RADII;
-    Halves halves = make_halves(0);
-    Status status =
-        checkpoint_read(quiet(), in_folder("none"), SETTINGS, &radii, halves.sum, &is_there);
+    SeriesState made = make_state(0);
+    Status status = checkpoint_read(quiet(), in_folder("none"), SETTINGS, &made, &is_there);
     assert_int_equal(status, OK);
     assert_false(is_there);
-    assert_int_equal(halves.sum[0].passes, 0);
-    halves_done(&halves);
+    assert_int_equal(series_passes(&made), 0);
+    series_state_done(&made);
     assert_int_equal(read_state(folder, SETTINGS), ERR_FILE); /* a directory */
 }
 
@@ -211,14 +204,14 @@ static void a_full_disk_leaves_the_old_state(void **state)
     char *before, *after;
     const char *path = write_state("kept");
     size_t size = slurp(path, &before);
-    Halves halves = some_halves();
-    halves.sum[1].passes = 13;
+    SeriesState made = some_state();
+    made.halves[1].passes = 13;
     struct rlimit old, small = {.rlim_cur = 100};
     signal(SIGXFSZ, SIG_IGN);
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &old), 0);
     small.rlim_max = old.rlim_max;
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
-    Status status = checkpoint_write(quiet(), path, SETTINGS, &RADII, halves.sum);
+    Status status = checkpoint_write(quiet(), path, SETTINGS, &made);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &old), 0);
     assert_int_equal(status, ERR_FILE);
     assert_non_null(strstr(last_message, "cannot write"));
@@ -226,9 +219,9 @@ static void a_full_disk_leaves_the_old_state(void **state)
     assert_memory_equal(before, after, size);
     snprintf(before, 300, "%s.part%ld", path, (long)getpid());
     assert_int_equal(access(before, F_OK), -1);
-    status = checkpoint_write(quiet(), in_folder("no/such"), SETTINGS, &RADII, halves.sum);
+    status = checkpoint_write(quiet(), in_folder("no/such"), SETTINGS, &made);
     assert_int_equal(status, ERR_FILE);
-    halves_done(&halves);
+    series_state_done(&made);
     free(before);
     free(after);
 }
@@ -256,28 +249,28 @@ static void sums_become_means(void **state)
 {
     (void)state;
     Film film = make_film(LAYER_Z), picture = make_film(LAYER_Z);
-    Halves halves = make_halves(LAYER_Z);
+    SeriesState made = make_state(LAYER_Z);
     const float *beauty = picture.image.layers[0].pixels, *depth = picture.image.layers[1].pixels;
-    film_sum_mean(halves.sum, 2, &picture.image);
+    film_sum_mean(made.halves, 2, &picture.image);
     assert_true(beauty[7] == 0);
     set_samples(1, 1);
     set_film(&film, 1, INFINITY);
-    film_sum_add(&halves.sum[0], &film);
+    film_sum_add(&made.halves[0], &film);
     set_film(&film, 4, 3);
-    film_sum_add(&halves.sum[1], &film);
+    film_sum_add(&made.halves[1], &film);
     set_samples(4, 3);
     samples[1].good = 0;
     set_film(&film, 1e9f, 5);
     film.image.layers[1].pixels[2] = NAN;
-    film_sum_add(&halves.sum[0], &film);
-    film_sum_mean(halves.sum, 2, &picture.image);
-    assert_int_equal(halves.sum[0].passes, 2);
+    film_sum_add(&made.halves[0], &film);
+    film_sum_mean(made.halves, 2, &picture.image);
+    assert_int_equal(made.halves[0].passes, 2);
     assert_true(beauty[7] == 2.5f);
     assert_true(beauty[3] == (float)((5 + 3e9) / 5));
     assert_true(depth[0] == 3 && depth[2] == 3);
-    film_sum_follow(&halves.sum[0], &film);
+    film_sum_follow(&made.halves[0], &film);
     assert_int_equal(samples[1].first, 5);
-    halves_done(&halves);
+    series_state_done(&made);
     film_done(&film);
     film_done(&picture);
 }

@@ -3,7 +3,7 @@
 
 #include "base/mem.h"
 #include "base/rng.h"
-#include "image/error_counts.h"
+#include "image/percentile.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -22,49 +22,54 @@ static double normal(Rng *rng)
     return sqrt(-2 * log(u)) * cos(2 * PMS_PI * v);
 }
 
-/* --- counts --------------------------------------------------------------------------------- */
+/* --- percentiles ---------------------------------------------------------------------------- */
 
 static void a_percentile_is_what_most_are_below(void **state)
 {
     (void)state;
-    ErrorCounts *counts = error_counts_new();
-    assert_true(error_counts_percentile(counts) == 0);
-    for (int i = 0; i < 100000; i++)
-        error_counts_add(counts, (size_t)i % 400, (size_t)i / 400, 1e-6 * i);
-    assert_true(fabs(error_counts_percentile(counts) / 0.095 - 1) < 0.002);
-    assert_true(error_counts_bound(counts) > error_counts_percentile(counts));
-    error_counts_free(counts);
-}
-
-/* Values that know nothing of each other are below the bound in nine of ten cases. */
-static void the_bound_holds_in_nine_of_ten_cases(void **state)
-{
-    (void)state;
-    enum { CASES = 400 };
-    int held = 0;
-    for (uint64_t k = 0; k < CASES; k++) {
-        Rng rng = rng_at(1, 0, k);
-        ErrorCounts *counts = error_counts_new();
-        for (size_t i = 0; i < 64 * 64; i++)
-            error_counts_add(counts, i % 64, i / 64, fabs(normal(&rng)));
-        held += error_counts_bound(counts) >= 1.95996;
-        error_counts_free(counts);
-    }
-    /* Standard error 0.015 of the share; the bins are 2 % wide. */
-    assert_true(fabs((double)held / CASES - 0.9) < 4 * 0.015);
+    static float errors[20000];
+    errors[0] = 1;
+    assert_true(error_percentile(errors, 0, 0.95) == 0);
+    for (int i = 0; i < 20000; i++)
+        errors[i] = i % 2 ? -1 : 1e-6f * (float)i; /* every other one is left out */
+    assert_true(fabs(error_percentile(errors, 20000, 0.95) / 0.019 - 1) < 0.002);
 }
 
 static void extremes_are_counted(void **state)
 {
     (void)state;
-    ErrorCounts *counts = error_counts_new();
-    error_counts_add(counts, 0, 0, 0);
-    error_counts_add(counts, 0, 0, 1e-30);
-    assert_true(error_counts_percentile(counts) == 0);
-    for (int i = 0; i < 100; i++)
-        error_counts_add(counts, 0, 0, INFINITY);
-    assert_true(error_counts_percentile(counts) > 5e5);
-    error_counts_free(counts);
+    const float few[] = {0, 1e-30f}, many[] = {0, INFINITY, INFINITY, NAN};
+    assert_true(error_percentile(few, 2, 0.95) == 0);
+    assert_true(error_percentile(many, 4, 0.95) > 5e5);
+}
+
+/* The bound of noise in patches of 4 by 4 pixels is above what another picture of the same kind has
+ * in nine of ten cases. */
+static void the_bound_holds_in_nine_of_ten_cases(void **state)
+{
+    (void)state;
+    enum { CASES = 400, WIDTH = 64 };
+    static float errors[WIDTH * WIDTH];
+    int held = 0;
+    for (uint32_t k = 0; k < CASES; k++) {
+        for (size_t i = 0; i < WIDTH * WIDTH; i++) {
+            Rng rng = rng_at(1, k, i % WIDTH / 4 + 100 * (i / WIDTH / 4));
+            errors[i] = (float)fabs(normal(&rng));
+        }
+        held += error_bound(errors, WIDTH, WIDTH) >= 1.95996;
+    }
+    /* Standard error 0.015 of the share; a tile holds but four patches, so the bound is rough. */
+    assert_true(fabs((double)held / CASES - 0.9) < 4 * 0.015);
+}
+
+/* A part of the picture that is wrong in every pixel is no matter of chance. */
+static void what_is_sure_widens_no_bound(void **state)
+{
+    (void)state;
+    static float errors[64 * 64];
+    for (size_t i = 0; i < 64 * 64; i++)
+        errors[i] = i / 64 < 8 ? 1e3f : 1;
+    assert_true(error_bound(errors, 64, 64) == error_percentile(errors, 64 * 64, 0.95));
 }
 
 /* --- halves --------------------------------------------------------------------------------- */
@@ -213,8 +218,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_percentile_is_what_most_are_below),
-        cmocka_unit_test(the_bound_holds_in_nine_of_ten_cases),
         cmocka_unit_test(extremes_are_counted),
+        cmocka_unit_test(the_bound_holds_in_nine_of_ten_cases),
+        cmocka_unit_test(what_is_sure_widens_no_bound),
         cmocka_unit_test(the_difference_of_halves_is_the_noise),
         cmocka_unit_test(bias_is_found_in_noise),
         cmocka_unit_test(errors_are_of_linear_light),

@@ -250,19 +250,72 @@ static void an_interrupted_render_has_whole_passes(void **state)
     done(&three);
 }
 
-static void time_ends_a_render_after_whole_passes(void **state)
+/* However short the time, there is a pass of either half: every pixel is there, and its error
+ * known.
+ */
+static void time_ends_a_render_after_a_pass_of_each_half(void **state)
 {
     (void)state;
     Run run = new_run(EVERYTHING);
     run.options.progressive.seconds = 1e-9;
     assert_int_equal(go(&run), OK);
-    assert_int_equal(run.result.passes, 1);
+    assert_int_equal(run.result.passes, 2);
+    assert_true(run.result.error.is_known);
     done(&run);
     run.options.progressive.seconds = 1e9;
     run.options.progressive.passes = 2;
     assert_int_equal(go(&run), OK);
     assert_int_equal(run.result.passes, 2);
     done(&run);
+}
+
+/* Passes end when the bound is below what is wanted, and not before. */
+static void an_error_wanted_ends_a_render(void **state)
+{
+    (void)state;
+    Run few = passes(EVERYTHING, 4), run = new_run(EVERYTHING);
+    run.options.progressive.error = 0.5 * few.result.error.bound;
+    assert_int_equal(go(&run), OK);
+    assert_true(run.result.passes > 4 && run.result.error.bound <= run.options.progressive.error);
+    assert_true(run.result.error.whole <= run.result.error.bound);
+    Run before = new_run(EVERYTHING);
+    before.options.progressive.error = run.options.progressive.error;
+    before.options.progressive.passes = run.result.passes - 2;
+    assert_int_equal(go(&before), OK);
+    assert_true(before.result.error.bound > run.options.progressive.error);
+    done(&few);
+    done(&run);
+    done(&before);
+}
+
+/* The plan is kept with the sums: 4 passes, 2 of the next plan, and the rest. */
+static void a_steered_render_may_be_spread_over_runs_and_threads(void **state)
+{
+    (void)state;
+    Run whole = new_run(EVERYTHING), parts;
+    whole.options.progressive.error = 1e-4;
+    whole.options.progressive.passes = 11;
+    assert_int_equal(go(&whole), OK);
+    const uint64_t ends[] = {3, 6, 11};
+    for (int i = 0; i < 3; i++) {
+        parts = new_run(EVERYTHING);
+        parts.options.progressive.error = 1e-4;
+        parts.options.progressive.passes = ends[i];
+        parts.options.progressive.state_path = in_folder("steered");
+        parts.options.progressive.is_resumed = i > 0;
+        parts.options.threads = 1 + i;
+        assert_int_equal(go(&parts), OK);
+        if (i < 2)
+            done(&parts);
+    }
+    assert_same_picture(&whole, &parts);
+    Run even = passes(EVERYTHING, 11); /* steering does something */
+    size_t size = (size_t)WIDTH * HEIGHT * 4 * sizeof(float);
+    assert_int_not_equal(
+        memcmp(whole.result.image.layers[0].pixels, even.result.image.layers[0].pixels, size), 0);
+    done(&whole);
+    done(&parts);
+    done(&even);
 }
 
 /* What cannot be shown first ends the render; what cannot be shown later does not. */
@@ -407,7 +460,9 @@ int main(void)
         cmocka_unit_test(radii_shrink_by_the_rule),
         cmocka_unit_test(pictures_are_shown_at_powers_of_two),
         cmocka_unit_test(an_interrupted_render_has_whole_passes),
-        cmocka_unit_test(time_ends_a_render_after_whole_passes),
+        cmocka_unit_test(time_ends_a_render_after_a_pass_of_each_half),
+        cmocka_unit_test(an_error_wanted_ends_a_render),
+        cmocka_unit_test(a_steered_render_may_be_spread_over_runs_and_threads),
         cmocka_unit_test(a_full_disk_stops_only_the_beginning),
         cmocka_unit_test(a_state_of_more_passes_is_shown_as_it_is),
         cmocka_unit_test(an_empty_map_lets_no_light_through),

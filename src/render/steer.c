@@ -1,0 +1,170 @@
+/* Steering a series of passes.  SPDX-License-Identifier: Apache-2.0 */
+#include "render/steer.h"
+
+#include "base/mem.h"
+#include "image/percentile.h"
+
+/* Samples a pass at least: what seems good enough is looked at all the same. */
+#define RATE_LEAST 0.125
+
+/* A pass has so many samples for each pixel at least. */
+#define SHARE_LEAST 0.5
+
+/* Of the standard error, the part of its square that is taken to be of photons where the light of
+ * the global map is gathered; it is not known apart. */
+#define HIDDEN_PHOTON_PART 0.1
+
+/* The relative error that 95 % are within, of a normal distribution with a standard error of 1. */
+#define NORMAL_95 1.96
+
+/* Noise aims a little below what is wanted: the bound is above the figure. */
+#define AIM 0.9
+
+/* Rounds of bisection for the level. */
+enum { LEVEL_ROUNDS = 40 };
+
+Status steering_init(Steering *steering, const Film *film, float rate, uint64_t until, Diag *diag)
+{
+    size_t pixels = (size_t)film->width * (size_t)film->height;
+    *steering = (Steering){.pixels = pixels, .until = until};
+    steering->rate = mem_array(pixels, sizeof *steering->rate);
+    if (!steering->rate)
+        return diag_no_memory(diag, "the samples of pixels");
+    for (size_t i = 0; i < pixels; i++)
+        steering->rate[i] = rate;
+    return OK;
+}
+
+void steering_done(Steering *steering)
+{
+    mem_free(steering->rate);
+    *steering = (Steering){0};
+}
+
+/* --- the plan ------------------------------------------------------------------------------- */
+
+typedef struct Planning {
+    const ErrorMap *map;
+    const FilmSum *halves;
+    double mean;        /* luminance of the picture */
+    double photon_work; /* see SteeringGoal */
+    double passes;      /* to come */
+} Planning;
+
+/* Return the samples a pass that bring a pixel's relative standard error down to `level` in the
+ * passes to come. */
+static double rate_for(const Planning *p, size_t i, double level)
+{
+    const ErrorMap *map = p->map;
+    double error = (double)map->smooth[i], caustic = (double)map->caustic[i];
+    double relative = error / error_scale((double)map->luminance[i], p->mean);
+    double taken = (double)p->halves[0].good[i] + (double)p->halves[1].good[i];
+    double wanted = taken * (relative * relative / (level * level) - 1) / p->passes;
+    double photon_part = error > 0 ? caustic * caustic / (error * error) : 0;
+    photon_part = fmin(1, fmax(photon_part, p->photon_work > 0 ? HIDDEN_PHOTON_PART : 0));
+    /* Samples of a pass share its photons: with n of them its error squared is the photons' part
+     * and the n-th of the rest, and its work that of the photons and n; this n makes the most of
+     * it. */
+    double most = photon_part > 0 ? fmax(1, sqrt((1 - photon_part) / photon_part * p->photon_work))
+                                  : STEERING_RATE_MOST;
+    return fmin(fmax(wanted, RATE_LEAST), fmin(most, STEERING_RATE_MOST));
+}
+
+static double samples_for(const Planning *p, size_t pixels, double level)
+{
+    double sum = 0;
+    for (size_t i = 0; i < pixels; i++)
+        sum += rate_for(p, i, level);
+    return sum;
+}
+
+/* Return the samples of a pixel in a pass: one, but with photons about what these cost.  Where
+ * those are cheap passes are rather more: then samples may gather where the error is, and share
+ * none. */
+static double affordable_rate(const Planning *p)
+{
+    double work = p->photon_work > 0 ? p->photon_work : 1;
+    return fmin(STEERING_RATE_MOST, fmax(SHARE_LEAST, work));
+}
+
+/* Return the level that takes as many samples a pass. */
+static double affordable_level(const Planning *p, size_t pixels, double now)
+{
+    double affordable = (double)pixels * affordable_rate(p);
+    double low = now / 1024, high = now;
+    for (int i = 0; i < LEVEL_ROUNDS; i++) {
+        double level = sqrt(low * high);
+        if (samples_for(p, pixels, level) > affordable)
+            low = level;
+        else
+            high = level;
+    }
+    return high;
+}
+
+/* Return how many passes are to come before the next plan: up to as many again, fewer when the goal
+ * is nearer than that; an even number. */
+static uint64_t passes_ahead(const ErrorFigure *figure, uint64_t passes, const SteeringGoal *goal)
+{
+    double ahead = (double)passes;
+    if (goal->error > 0) {
+        double ratio = figure->bound / goal->error;
+        ahead = fmin(ahead, (double)passes * (ratio * ratio - 1));
+    }
+    ahead = fmin(ahead, goal->passes_left);
+    uint64_t pairs = (uint64_t)ceil(ahead / 2);
+    return 2 * (pairs < 1 ? 1 : pairs);
+}
+
+/* The standard error that makes the noise what the goal leaves it beside the bias. */
+static double level_wanted(const ErrorFigure *figure, const SteeringGoal *goal)
+{
+    double error = goal->error, bias = fmin(figure->bias, 0.8 * error);
+    return AIM * sqrt(error * error - bias * bias) / NORMAL_95;
+}
+
+void steering_plan(Steering *steering, const ErrorMap *map, const FilmSum halves[2],
+                   const ErrorFigure *figure, uint64_t passes, const SteeringGoal *goal)
+{
+    uint64_t ahead = passes_ahead(figure, passes, goal);
+    Planning p = {.map = map,
+                  .halves = halves,
+                  .mean = error_map_mean(map),
+                  .photon_work = goal->photon_work / (double)steering->pixels,
+                  .passes = (double)ahead};
+    steering->until = passes + ahead;
+    if (!(figure->noise > 0) || !(p.mean > 0))
+        return;
+    double level = affordable_level(&p, steering->pixels, figure->noise);
+    if (goal->error > 0)
+        level = fmax(level, level_wanted(figure, goal));
+    for (size_t i = 0; i < steering->pixels; i++)
+        steering->rate[i] = (float)rate_for(&p, i, level);
+}
+
+/* --- dealing out ---------------------------------------------------------------------------- */
+
+/* A number in [0, 1) that is spread evenly over any few pixels. */
+static double phase_of(size_t pixel)
+{
+    double golden = 0.6180339887498949 * (double)(pixel % 0x1000000);
+    return golden - floor(golden);
+}
+
+void steering_deal(const Steering *steering, uint64_t pass, double part, Film *film)
+{
+    double pair = (double)(pass / 2 % 0x1000000);
+    for (size_t i = 0; i < steering->pixels; i++) {
+        double rate = part * (double)steering->rate[i], phase = phase_of(i);
+        double samples = floor((pair + 1) * rate + phase) - floor(pair * rate + phase);
+        film->samples[i].wanted = (uint16_t)fmin(samples, UINT16_MAX);
+    }
+}
+
+double steering_samples(const Steering *steering)
+{
+    double sum = 0;
+    for (size_t i = 0; i < steering->pixels; i++)
+        sum += (double)steering->rate[i];
+    return sum;
+}
