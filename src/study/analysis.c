@@ -18,6 +18,9 @@
 /* An error that falls by less than this power of the seconds does not pay. */
 #define SLOPE_LEAST 0.05
 
+/* An error that grows by more than this power of the seconds is no accident. */
+#define SLOPE_WORSE 0.1
+
 /* A trend is followed to so many times the seconds it was measured at, no further. */
 #define FOLLOW_MOST 1000
 
@@ -216,6 +219,26 @@ static bool collect_rows(const StudyBase *base, const StudyAnalysis *all, StudyT
     return has_rows;
 }
 
+/* Return true if the point that should cost most has a larger error than the one that should cost
+ * least.  Seconds do not tell: a busy machine spoils the short ones. */
+static bool grows_with_cost(const StudyTrend *trend, const StudyRow *rows)
+{
+    double least = INFINITY, most = 0, error_least = NAN, error_most = NAN;
+    for (int i = 0; i < trend->count; i++) {
+        const StudyRow *row = &rows[trend->rows[i]];
+        double cost = row->point->photon_cost + row->point->eye_cost;
+        if (cost < least) {
+            least = cost;
+            error_least = row->error;
+        }
+        if (cost > most) {
+            most = cost;
+            error_most = row->error;
+        }
+    }
+    return error_most > error_least;
+}
+
 /* Find the trend of a setting. */
 static bool make_trend(const StudyBase *base, int setting, bool is_fine, const StudyAnalysis *all,
                        StudyTrend *out)
@@ -234,6 +257,8 @@ static bool make_trend(const StudyBase *base, int setting, bool is_fine, const S
     bool has_order = setting_kind((SettingId)setting) != SETTING_WORDS;
     out->fit = study_fit(seconds, errors, has_order ? out->count : 0);
     bool falls = out->fit.count >= 2 && out->fit.slope < -SLOPE_LEAST;
+    out->is_worse =
+        out->fit.count >= 2 && out->fit.slope > SLOPE_WORSE && grows_with_cost(out, all->rows);
     out->halving = falls ? pow(2, -1 / out->fit.slope) : INFINITY;
     return true;
 }

@@ -37,6 +37,7 @@ typedef struct StudyTrend {
     double own;        /* value; NaN: a way to render */
     StudyFit fit;
     double halving;    /* times the seconds to halve the error; infinite: it never does so */
+    bool is_worse;     /* the error grows with what is spent */
     double best;       /* the smallest error of it */
     double part;       /* that over the error with the scene's own value */
 } StudyTrend;

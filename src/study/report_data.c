@@ -7,9 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-/* An error that grows by more than this power of the seconds is no accident. */
-#define SLOPE_WORSE 0.1
-
 /* --- numbers for people --------------------------------------------------------------------- */
 
 void report_percent(double error, char out[32])
@@ -45,7 +42,7 @@ void report_halving(const StudyTrend *trend, char out[48])
         snprintf(out, 48, "one value measured");
     else if (trend->fit.count < 2)
         snprintf(out, 48, "costs no time");
-    else if (trend->fit.slope > SLOPE_WORSE)
+    else if (trend->is_worse)
         snprintf(out, 48, "more is worse");
     else if (!(trend->halving < TIMES_MOST))
         snprintf(out, 48, "not by this alone");

@@ -420,7 +420,23 @@ static void fine_trends_tell_more(void **state)
     end(&r);
 }
 
-static void nothing_is_out_of_reach_of_words(void **state)
+/* More photons an estimate are worse; more samples are not, though the scene as it stands took
+ * longer when the machine was busy. */
+static void a_busy_machine_makes_nothing_worse(void **state)
+{
+    (void)state;
+    Runs r;
+    begin(&r);
+    put_run(&r, find_point(&r.setup, SETTING_GATHER, 400, false), 0, 2, 0.4);
+    put_run(&r, find_point(&r.setup, SETTING_SAMPLES, 4, false), 0, 0.5, 0.1);
+    analyse(&r, NAN);
+    assert_true(trend_of(&r, SETTING_GATHER)->is_worse);
+    assert_true(trend_of(&r, SETTING_SAMPLES)->fit.slope > 0);
+    assert_false(trend_of(&r, SETTING_SAMPLES)->is_worse);
+    end(&r);
+}
+
+static void no_runs_no_claims(void **state)
 {
     (void)state;
     Runs r;
@@ -521,7 +537,8 @@ int main(void)
         cmocka_unit_test(means_and_noise),
         cmocka_unit_test(trends_and_advice),
         cmocka_unit_test(fine_trends_tell_more),
-        cmocka_unit_test(nothing_is_out_of_reach_of_words),
+        cmocka_unit_test(a_busy_machine_makes_nothing_worse),
+        cmocka_unit_test(no_runs_no_claims),
         cmocka_unit_test(every_setting_has_its_turn),
         cmocka_unit_test(noise_of_the_reference_cancels),
     };
