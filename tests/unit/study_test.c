@@ -211,10 +211,10 @@ static void points_set_what_they_say(void **state)
     assert_null(find_point(&s, SETTING_GATHER, 90, false));
     point = find_point(&s, SETTING_RADIUS, 1, false);
     near(point->scene.settings.photons.radius, 1, 0);
-    point = find_point(&s, SETTING_BALANCED, 16, false);
-    assert_int_equal(point->options.samples, 16);
-    assert_int_equal(point->scene.settings.photons.count, 8000);
-    assert_int_equal(point->scene.settings.photons.gather_max, 360);
+    point = find_point(&s, SETTING_BALANCED, 32, false);
+    assert_int_equal(point->options.samples, 32);
+    assert_int_equal(point->scene.settings.photons.count, 16000);
+    assert_int_equal(point->scene.settings.photons.gather_max, 571);
     point = find_point(&s, SETTING_PRECISION, 1, false);
     assert_true(point->options.has_full_photons);
     scene_free(s.scene);
@@ -376,7 +376,7 @@ static void trends_and_advice(void **state)
     begin(&r);
     for (int i = 0; i < 3; i++) { /* error = 0.2 seconds^-1/2 */
         double seconds = pow(4, i + 1);
-        const StudyPoint *point = find_point(&r.setup, SETTING_PASSES, seconds, false);
+        const StudyPoint *point = find_point(&r.setup, SETTING_PASSES, seconds / 2, false);
         put_run(&r, point, 0, seconds, 0.2 / sqrt(seconds));
     }
     put_run(&r, find_point(&r.setup, SETTING_PHOTONS, 4000, false), 0, 3, 0.1999);
@@ -391,10 +391,10 @@ static void trends_and_advice(void **state)
     near(advice[0].seconds, 16, 1e-12);
     assert_string_equal(
         advice[0].how,
-        "--progressive --passes 16 and global_settings { max_trace_level 10 adc_bailout 0.00098 }");
+        "--progressive --passes 8 and global_settings { max_trace_level 10 adc_bailout 0.00098 }");
     assert_int_equal(advice[1].kind, ADVICE_EXTRAPOLATED);
     near(advice[1].seconds, 400, 1e-6);
-    assert_string_equal(advice[1].how, "--progressive --passes 400 and global_settings { "
+    assert_string_equal(advice[1].how, "--progressive --passes 200 and global_settings { "
                                        "max_trace_level 10 adc_bailout 0.00098 }");
     near(advice[2].seconds, 10000, 1e-3);
     assert_int_equal(r.analysis.front_count, 4);
