@@ -112,9 +112,10 @@ static Status compare_sides(const Args *args, SideRun *pms, SideRun *povray)
     Thresholds limits;
     CompareResult result;
     double gain;
+    int corner[2];
     TRY(thresholds_read(args, &limits));
     TRY(args_number(args, OPT_GAIN, 0, 1e6, 4, &gain));
-    TRY(region_apply(args, &pms->image, &povray->image));
+    TRY(crop_apply(args, &pms->image, &povray->image, corner));
     TRY(image_compare(args->diag, &pms->image, &povray->image, &result));
     if (args->output_count)
         TRY(write_side_by_side(args, pms, povray, gain));

@@ -26,18 +26,22 @@ static bool is_inside(const int r[4], const Image *image)
            r[1] < image->height && r[2] <= image->width - r[0] && r[3] <= image->height - r[1];
 }
 
-Status region_apply(const Args *args, Image *a, Image *b)
+Status crop_apply(const Args *args, Image *a, Image *b, int corner[2])
 {
-    const char *text = args->value[OPT_REGION];
+    const char *text = args->value[OPT_CROP];
     int r[4], length = 0;
+    corner[0] = corner[1] = 0;
     if (!text)
         return OK;
     if (sscanf(text, "%d,%d,%d,%d%n", &r[0], &r[1], &r[2], &r[3], &length) != 4 || text[length])
-        return diag_fail(args->diag, ERR_USAGE, "--region wants X,Y,W,H, got '%s'", text);
+        return diag_fail(args->diag, ERR_USAGE, "--crop wants X,Y,W,H, got '%s'", text);
     if (!is_inside(r, a) || !is_inside(r, b))
-        return diag_fail(args->diag, ERR_USAGE, "the region %s does not lie in the images", text);
+        return diag_fail(args->diag, ERR_USAGE, "the rectangle %s does not lie in the images",
+                         text);
     image_crop(a, r[0], r[1], r[2], r[3]);
     image_crop(b, r[0], r[1], r[2], r[3]);
+    corner[0] = r[0];
+    corner[1] = r[1];
     return OK;
 }
 

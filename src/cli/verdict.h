@@ -14,8 +14,10 @@ typedef struct Thresholds {
 /* Read --max-rmse and its kin. */
 Status thresholds_read(const Args *args, Thresholds *out);
 
-/* Cut both images to --region, if it was given.  ERR_USAGE if it does not lie in them. */
-Status region_apply(const Args *args, Image *a, Image *b);
+/* Cut both images to --crop, if it was given.  ERR_USAGE if it does not lie in them.
+ *
+ * corner  its place in the images, x and y: 0 without --crop. */
+Status crop_apply(const Args *args, Image *a, Image *b, int corner[2]);
 
 /* Return ERR_COMPARE, after saying which, if a metric is past its bound; an image with pixels
  * that are no numbers fails any bound. */

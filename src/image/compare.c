@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "image/compare_int.h"
 #include "image/exr.h"
 #include "image/flip.h"
 #include "image/percentile.h"
@@ -16,12 +17,6 @@
 #include <math.h>
 #include <string.h>
 #include <unistd.h>
-
-/* Colours of an image, three floats a pixel. */
-typedef struct Colours {
-    float *rgb;
-    bool is_display;
-} Colours;
 
 static const ImageLayer *beauty_of(const Image *image)
 {
@@ -49,15 +44,14 @@ static float over_black(float v, float alpha)
 }
 
 /* Copy the colours of an image; grey images become colours. */
-static Status extract(Diag *diag, const Image *image, bool to_display, Colours *out)
+static Status extract(Diag *diag, const Image *image, bool to_display, float **out)
 {
     const ImageLayer *layer = beauty_of(image);
     if (!layer)
         return diag_fail(diag, ERR_USAGE, "an image without R, G and B cannot be compared");
     size_t count = (size_t)image->width * (size_t)image->height;
-    out->is_display = image->is_display || to_display;
-    out->rgb = mem_array(count, 3 * sizeof *out->rgb);
-    if (!out->rgb)
+    float *rgb = *out = mem_array(count, 3 * sizeof *rgb);
+    if (!rgb)
         return diag_no_memory(diag, "a comparison");
     bool is_grey = image_channel(layer, 'R') < 0;
     int alpha = image->is_display ? image_channel(layer, 'A') : -1;
@@ -67,21 +61,33 @@ static Status extract(Diag *diag, const Image *image, bool to_display, Colours *
         for (size_t i = 0; i < count; i++) {
             size_t at = i * (size_t)layer->channel_count;
             float v = a ? over_black(from[at], a[at]) : from[at];
-            out->rgb[3 * i + (size_t)c] = to_display && !image->is_display ? encode(v) : v;
+            rgb[3 * i + (size_t)c] = to_display && !image->is_display ? encode(v) : v;
         }
     }
     return OK;
 }
 
-static Status extract_both(Diag *diag, const Image *a, const Image *b, Colours *ca, Colours *cb)
+Status colour_pair_init(Diag *diag, const Image *a, const Image *b, ColourPair *out)
 {
-    *ca = *cb = (Colours){0};
+    *out = (ColourPair){.width = a->width, .height = a->height};
     if (a->width != b->width || a->height != b->height)
         return diag_fail(diag, ERR_USAGE, "the images differ in size: %dx%d and %dx%d", a->width,
                          a->height, b->width, b->height);
-    bool to_display = a->is_display || b->is_display;
-    TRY(extract(diag, a, to_display, ca));
-    return extract(diag, b, to_display, cb);
+    out->pixels = (size_t)a->width * (size_t)a->height;
+    out->is_display = a->is_display || b->is_display;
+    Status status = extract(diag, a, out->is_display, &out->a);
+    if (status == OK)
+        status = extract(diag, b, out->is_display, &out->b);
+    if (status != OK)
+        colour_pair_done(out);
+    return status;
+}
+
+void colour_pair_done(ColourPair *pair)
+{
+    mem_free(pair->a);
+    mem_free(pair->b);
+    *pair = (ColourPair){0};
 }
 
 static bool is_finite_pixel(const float *rgb)
@@ -94,11 +100,12 @@ static double light_of(float v, bool is_display)
     return (double)(is_display ? srgb_decode(v) : v);
 }
 
-static void sum_errors(const float *a, const float *b, size_t pixels, CompareResult *out)
+static void sum_errors(const ColourPair *pair, CompareResult *out)
 {
+    const float *a = pair->a, *b = pair->b;
     double squares = 0, sum = 0, relative = 0, mean_a = 0, mean_b = 0, light_a = 0, light_b = 0;
     size_t used = 0;
-    for (size_t i = 0; i < pixels; i++, a += 3, b += 3) {
+    for (size_t i = 0; i < pair->pixels; i++, a += 3, b += 3) {
         bool is_good_a = is_finite_pixel(a), is_good_b = is_finite_pixel(b);
         out->bad_a += !is_good_a;
         out->bad_b += !is_good_b;
@@ -129,113 +136,137 @@ static void sum_errors(const float *a, const float *b, size_t pixels, CompareRes
 }
 
 /* Linear colours; of display values, decoded. */
-static void decode_light(const Colours *colours, size_t pixels, float *out)
+static void decode_light(const float *rgb, const ColourPair *pair, float *out)
 {
-    for (size_t i = 0; i < 3 * pixels; i++)
-        out[i] = (float)light_of(colours->rgb[i], colours->is_display);
+    for (size_t i = 0; i < 3 * pair->pixels; i++)
+        out[i] = (float)light_of(rgb[i], pair->is_display);
 }
 
-static Status find_error95(Diag *diag, const Colours *a, const Colours *reference, size_t pixels,
-                           double *out)
+static Status find_error95(Diag *diag, const ColourPair *pair, double *out)
 {
-    float *light = mem_array(pixels, 6 * sizeof *light);
+    float *light = mem_array(pair->pixels, 6 * sizeof *light);
     bool is_done = light != NULL;
     if (is_done) {
-        decode_light(a, pixels, light);
-        decode_light(reference, pixels, light + 3 * pixels);
-        is_done = error_between(light, light + 3 * pixels, pixels, out);
+        decode_light(pair->a, pair, light);
+        decode_light(pair->b, pair, light + 3 * pair->pixels);
+        is_done = error_between(light, light + 3 * pair->pixels, pair->pixels, out);
     }
     mem_free(light);
     return is_done ? OK : diag_no_memory(diag, "a comparison");
 }
 
+static bool is_good_pixel(const ColourPair *pair, size_t i)
+{
+    return is_finite_pixel(pair->a + 3 * i) && is_finite_pixel(pair->b + 3 * i);
+}
+
 /* Return the display-encoded luma of each pixel; what cannot be compared is black in both. */
-static void luma_of(const Colours *colours, const Colours *other, size_t pixels, float *luma)
+static void luma_of(const float *rgb, const ColourPair *pair, float *luma)
 {
     static const float weight[3] = {0.2126f, 0.7152f, 0.0722f};
-    for (size_t i = 0; i < pixels; i++) {
-        const float *p = colours->rgb + 3 * i;
+    for (size_t i = 0; i < pair->pixels; i++) {
+        const float *p = rgb + 3 * i;
         luma[i] = 0;
-        if (!is_finite_pixel(p) || !is_finite_pixel(other->rgb + 3 * i))
+        if (!is_good_pixel(pair, i))
             continue;
         for (int c = 0; c < 3; c++)
-            luma[i] += weight[c] * (colours->is_display ? clip(p[c]) : encode(p[c]));
+            luma[i] += weight[c] * (pair->is_display ? clip(p[c]) : encode(p[c]));
     }
 }
 
-static Status find_ssim(Diag *diag, const Colours *a, const Colours *b, int width, int height,
-                        double *ssim)
+static Status find_ssim(Diag *diag, const ColourPair *pair, double *ssim)
 {
-    size_t pixels = (size_t)width * (size_t)height;
-    float *luma = mem_array(pixels, 2 * sizeof *luma);
+    float *luma = mem_array(pair->pixels, 2 * sizeof *luma);
     if (!luma)
         return diag_no_memory(diag, "a comparison");
-    luma_of(a, b, pixels, luma);
-    luma_of(b, a, pixels, luma + pixels);
-    bool is_done = ssim_mean(luma, luma + pixels, width, height, ssim);
+    luma_of(pair->a, pair, luma);
+    luma_of(pair->b, pair, luma + pair->pixels);
+    bool is_done = ssim_mean(luma, luma + pair->pixels, pair->width, pair->height, ssim);
     mem_free(luma);
     return is_done ? OK : diag_no_memory(diag, "a comparison");
 }
 
 /* Linear colours for FLIP; what cannot be compared is black in both. */
-static void light_for_flip(const Colours *colours, const Colours *other, size_t pixels, float *out)
+static void light_for_flip(const float *rgb, const ColourPair *pair, float *out)
 {
-    for (size_t i = 0; i < 3 * pixels; i += 3) {
-        bool is_good = is_finite_pixel(colours->rgb + i) && is_finite_pixel(other->rgb + i);
-        for (size_t c = i; c < i + 3; c++) {
-            float v = is_good ? colours->rgb[c] : 0;
-            out[c] = colours->is_display ? srgb_decode(clip(v)) : v;
+    for (size_t i = 0; i < pair->pixels; i++) {
+        bool is_good = is_good_pixel(pair, i);
+        for (size_t c = 3 * i; c < 3 * i + 3; c++) {
+            float v = is_good ? rgb[c] : 0;
+            out[c] = pair->is_display ? srgb_decode(clip(v)) : v;
         }
     }
 }
 
 /* Fill `map` with a value a pixel. */
-static Status find_flip(Diag *diag, const Colours *a, const Colours *reference, int width,
-                        int height, float *map)
+static Status fill_flip(Diag *diag, const ColourPair *pair, float *map)
 {
-    size_t pixels = (size_t)width * (size_t)height;
-    float *light = mem_array(pixels, 6 * sizeof *light);
+    float *light = mem_array(pair->pixels, 6 * sizeof *light);
     if (!light)
         return diag_no_memory(diag, "a comparison");
-    light_for_flip(reference, a, pixels, light);
-    light_for_flip(a, reference, pixels, light + 3 * pixels);
-    bool is_done = flip_map(light, light + 3 * pixels, width, height, reference->is_display, map);
+    float *test = light + 3 * pair->pixels;
+    light_for_flip(pair->b, pair, light);
+    light_for_flip(pair->a, pair, test);
+    bool is_done = flip_map(light, test, pair->width, pair->height, pair->is_display, map);
     mem_free(light);
     return is_done ? OK : diag_no_memory(diag, "a comparison");
 }
 
-static Status find_mean_flip(Diag *diag, const Colours *a, const Colours *reference, int width,
-                             int height, double *mean)
+/* Show a value a pixel as heat. */
+static Status paint_map(Diag *diag, const ColourPair *pair, const float *map, Image *out)
 {
-    size_t pixels = (size_t)width * (size_t)height;
-    float *map = mem_array(pixels, sizeof *map);
+    image_init(out, pair->width, pair->height);
+    out->is_display = true;
+    ImageLayer *layer = image_add_layer(out, "", "RGB");
+    if (!layer) {
+        image_done(out);
+        return diag_no_memory(diag, "a difference image");
+    }
+    for (size_t i = 0; i < pair->pixels; i++)
+        image_heat(map[i], layer->pixels + 3 * i);
+    return OK;
+}
+
+/* Find FLIP's mean, and the picture of it unless `out` is NULL. */
+static Status find_flip(Diag *diag, const ColourPair *pair, double *mean, Image *out)
+{
+    float *map = mem_array(pair->pixels, sizeof *map);
     if (!map)
         return diag_no_memory(diag, "a comparison");
-    Status status = find_flip(diag, a, reference, width, height, map);
-    double sum = 0;
-    for (size_t i = 0; i < pixels; i++)
-        sum += (double)map[i];
-    *mean = sum / (double)pixels;
+    Status status = fill_flip(diag, pair, map);
+    if (status == OK) {
+        double sum = 0;
+        for (size_t i = 0; i < pair->pixels; i++)
+            sum += (double)map[i];
+        *mean = sum / (double)pair->pixels;
+        if (out)
+            status = paint_map(diag, pair, map, out);
+    }
     mem_free(map);
     return status;
 }
 
 Status image_compare(Diag *diag, const Image *a, const Image *reference, CompareResult *out)
 {
-    Colours ca, cb;
+    return image_compare_flip(diag, a, reference, out, NULL);
+}
+
+Status image_compare_flip(Diag *diag, const Image *a, const Image *reference, CompareResult *out,
+                          Image *flip)
+{
+    ColourPair pair;
     *out = (CompareResult){0};
-    Status status = extract_both(diag, a, reference, &ca, &cb);
-    if (status == OK) {
-        out->is_display = ca.is_display;
-        sum_errors(ca.rgb, cb.rgb, (size_t)a->width * (size_t)a->height, out);
-        status = find_ssim(diag, &ca, &cb, a->width, a->height, &out->ssim);
-    }
+    if (flip)
+        *flip = (Image){0};
+    TRY(colour_pair_init(diag, a, reference, &pair));
+    out->is_display = pair.is_display;
+    sum_errors(&pair, out);
+    Status status = find_ssim(diag, &pair, &out->ssim);
     if (status == OK)
-        status = find_error95(diag, &ca, &cb, (size_t)a->width * (size_t)a->height, &out->error95);
+        status = find_error95(diag, &pair, &out->error95);
     if (status == OK)
-        status = find_mean_flip(diag, &ca, &cb, a->width, a->height, &out->flip);
-    mem_free(ca.rgb);
-    mem_free(cb.rgb);
+        status = find_flip(diag, &pair, &out->flip, flip);
+    colour_pair_done(&pair);
     return status;
 }
 
@@ -251,23 +282,18 @@ static void subtract(const float *a, const float *b, size_t pixels, float gain, 
 
 Status image_difference(Diag *diag, const Image *a, const Image *b, float gain, Image *out)
 {
-    Colours ca, cb;
+    ColourPair pair;
     *out = (Image){0};
-    Status status = extract_both(diag, a, b, &ca, &cb);
-    if (status == OK) {
-        image_init(out, a->width, a->height);
-        out->is_display = ca.is_display;
-        ImageLayer *layer = image_add_layer(out, "", "RGB");
-        if (layer)
-            subtract(ca.rgb, cb.rgb, (size_t)a->width * (size_t)a->height, gain, layer->pixels);
-        else
-            status = diag_no_memory(diag, "a difference image");
-    }
-    mem_free(ca.rgb);
-    mem_free(cb.rgb);
-    if (status != OK)
+    TRY(colour_pair_init(diag, a, b, &pair));
+    image_init(out, a->width, a->height);
+    out->is_display = pair.is_display;
+    ImageLayer *layer = image_add_layer(out, "", "RGB");
+    if (layer)
+        subtract(pair.a, pair.b, pair.pixels, gain, layer->pixels);
+    else
         image_done(out);
-    return status;
+    colour_pair_done(&pair);
+    return layer ? OK : diag_no_memory(diag, "a difference image");
 }
 
 void image_heat(float x, float out[3])
@@ -284,36 +310,14 @@ void image_heat(float x, float out[3])
         out[c] = stops[i][c] + (place - (float)i) * (stops[i + 1][c] - stops[i][c]);
 }
 
-static Status flip_image(Diag *diag, const Colours *a, const Colours *reference, Image *out)
-{
-    ImageLayer *layer = image_add_layer(out, "", "RGB");
-    size_t pixels = (size_t)out->width * (size_t)out->height;
-    float *map = mem_array(pixels, sizeof *map);
-    Status status = OK;
-    if (!layer || !map)
-        status = diag_no_memory(diag, "a difference image");
-    if (status == OK)
-        status = find_flip(diag, a, reference, out->width, out->height, map);
-    for (size_t i = 0; i < pixels && status == OK; i++)
-        image_heat(map[i], layer->pixels + 3 * i);
-    mem_free(map);
-    return status;
-}
-
 Status image_flip(Diag *diag, const Image *a, const Image *reference, Image *out)
 {
-    Colours ca, cb;
+    ColourPair pair;
+    double mean;
     *out = (Image){0};
-    Status status = extract_both(diag, a, reference, &ca, &cb);
-    if (status == OK) {
-        image_init(out, a->width, a->height);
-        out->is_display = true;
-        status = flip_image(diag, &ca, &cb, out);
-    }
-    mem_free(ca.rgb);
-    mem_free(cb.rgb);
-    if (status != OK)
-        image_done(out);
+    TRY(colour_pair_init(diag, a, reference, &pair));
+    Status status = find_flip(diag, &pair, &mean, out);
+    colour_pair_done(&pair);
     return status;
 }
 

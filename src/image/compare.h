@@ -31,6 +31,10 @@ typedef struct CompareResult {
  * ERR_USAGE if sizes differ or an image has no colours.  O(pixels). */
 Status image_compare(Diag *diag, const Image *a, const Image *reference, CompareResult *out);
 
+/* Do the same, and make the picture of image_flip of what was found; `flip` NULL: none. */
+Status image_compare_flip(Diag *diag, const Image *a, const Image *reference, CompareResult *out,
+                          Image *flip);
+
 /* Make the difference image |a-b| scaled by `gain`; is_display as in CompareResult.  Pixels
  * that cannot be compared are magenta. */
 Status image_difference(Diag *diag, const Image *a, const Image *b, float gain, Image *out);

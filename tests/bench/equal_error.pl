@@ -53,7 +53,7 @@ sub povray {
 
 sub rmse {
     my ($scene, $file, $reference) = @_;
-    my $region = $scene->{region} ? "--region $scene->{region}" : '';
+    my $region = $scene->{region} ? "--crop $scene->{region}" : '';
     my $json   = `$pms compare $folder/$file $folder/$reference $region --json`;
     $json =~ /"rmse": ([^,]+)/ or die "cannot compare $file with $reference\n";
     return $1;

@@ -64,9 +64,39 @@ else
     skip "exrheader is not installed"
 fi
 
-says '^rmse +0$' "a region without difference" "$PMS" compare "$T/a.exr" "$T/b.exr" --region 0,0,5,48
-fails 2 "wants X,Y,W,H" "a region that is none" "$PMS" compare "$T/a.exr" "$T/b.exr" --region 1,2,3
-fails 2 "does not lie" "a region outside" "$PMS" compare "$T/a.exr" "$T/b.exr" --region 60,0,5,5
+says '^rmse +0$' "a rectangle without difference" "$PMS" compare "$T/a.exr" "$T/b.exr" --crop 0,0,5,48
+fails 2 "wants X,Y,W,H" "a rectangle that is none" "$PMS" compare "$T/a.exr" "$T/b.exr" --crop 1,2,3
+fails 2 "does not lie" "a rectangle outside" "$PMS" compare "$T/a.exr" "$T/b.exr" --crop 60,0,5,5
+
+for s in a b; do
+    "$PMS" "$T/$s.pms" $size --layers error.noise -o "$T/${s}_noise.exr" 2>/dev/null
+    "$PMS" "$T/$s.pms" $size --progressive --passes 32 --seed 5 --layers error.noise,error.bias \
+        -o "$T/${s}_passes.exr" 2>/dev/null
+done
+"$PMS" "$T/a.pms" $size --progressive --passes 32 --seed 6 --layers error.noise,error.bias \
+    -o "$T/other.exr" 2>/dev/null
+says '^verdict +pass' "another seed passes the z-test" \
+    "$PMS" compare "$T/a_passes.exr" "$T/other.exr" --z-test
+grep -q 'noise of both images; bias subtracted' "$T/out" && grep -q '^pixels  *3072$' "$T/out"
+ok $? "which says what it allows for"
+fails 1 "differ by more than their noise" "another colour does not" \
+    "$PMS" compare "$T/a_passes.exr" "$T/b_passes.exr" --z-test
+grep -q '^verdict  fail$' "$T/out"
+ok $? "and says so on standard output"
+says '^worst +[^ ]+ at ([4-9]|1[0-9]),(1[0-9]|2[0-9])$' "the worst pixel is one of the whole picture" \
+    "$PMS" compare "$T/a_passes.exr" "$T/other.exr" --z-test --crop 4,10,16,20
+says 'noise of A alone; B counts as exact' "a picture without noise is exact" \
+    "$PMS" compare "$T/a_noise.exr" "$T/a.exr" --z-test
+says 'noise of B alone; A counts as exact' "on the other side too" \
+    "$PMS" compare "$T/a.exr" "$T/a_noise.exr" --z-test
+says '^verdict +pass' "cut to what is alike" \
+    "$PMS" compare "$T/a_noise.exr" "$T/b_noise.exr" --z-test --crop 0,0,5,48
+says '"z_test": \{"exact_a": false, .*"critical_z": [0-9.]+, "accepted": 1\.0*, .*"pass": true\}\}$' \
+    "the z-test as JSON" "$PMS" compare "$T/a_noise.exr" "$T/a.exr" --z-test --json
+fails 2 "pms SCENE --layers error.noise" "two pictures without noise" \
+    "$PMS" compare "$T/a.exr" "$T/b.exr" --z-test
+fails 2 "a PNG has neither" "the z-test of a PNG" \
+    "$PMS" compare "$T/a_noise.exr" "$T/a.png" --z-test
 
 "$PMS" "$T/a.pms" -w 32 --height 48 -o "$T/small.png" 2>/dev/null
 fails 2 "differ in size" "images of two sizes" "$PMS" compare "$T/a.png" "$T/small.png"

@@ -39,7 +39,7 @@ ok $? "a screenshot"
 
 # light X,Y,W,H: the mean of that part of the screenshot
 light() {
-    "$PMS" compare "$T/shot.png" "$T/shot.png" --region="$1" 2>"$T/err" | sed -n 's/^means *\([^ ]*\) .*/\1/p'
+    "$PMS" compare "$T/shot.png" "$T/shot.png" --crop="$1" 2>"$T/err" | sed -n 's/^means *\([^ ]*\) .*/\1/p'
 }
 # between LOW VALUE HIGH
 between() { awk -v a="$1" -v x="$2" -v b="$3" 'BEGIN { exit !(x != "" && x >= a && x <= b) }'; }

@@ -89,7 +89,7 @@ light() {
         +Lstdlib >/dev/null 2>"$T/err" </dev/null &&
         "$PMS" "$T/$name.pms" $size -L "$(dirname "$scene")" -o "$T/pms.exr" --progress none \
             2>"$T/err" &&
-        "$PMS" compare "$T/pms.exr" "$T/povray.exr" --region "$(region "$name")" --json \
+        "$PMS" compare "$T/pms.exr" "$T/povray.exr" --crop "$(region "$name")" --json \
             >"$T/json" 2>"$T/err" || sed 's/^/# /' "$T/err"
     a=$(number light_a "$T/json") b=$(number light_b "$T/json")
     ratio=$(awk -v a="${a:-0}" -v b="${b:-0}" 'BEGIN { printf "%.4f", (b > 0 ? a / b : 0) }')

@@ -213,6 +213,25 @@ static void difference_is_scaled(void **state)
     image_done(&d);
 }
 
+static void the_flip_map_comes_with_the_metrics(void **state)
+{
+    (void)state;
+    Image a, b, with, alone;
+    float *pa = make(&a, 20, 20, "RGB", 0.5f);
+    make(&b, 20, 20, "RGB", 0.25f);
+    pa[30] = 3;
+    CompareResult r;
+    assert_int_equal(image_compare_flip(quiet(), &a, &b, &r, &with), OK);
+    assert_true(r.flip == compare(&a, &b).flip && r.flip > 0);
+    assert_int_equal(image_flip(quiet(), &a, &b, &alone), OK);
+    assert_true(with.is_display && with.width == 20 && with.height == 20);
+    assert_memory_equal(with.layers[0].pixels, alone.layers[0].pixels, 1200 * sizeof(float));
+    image_done(&a);
+    image_done(&b);
+    image_done(&with);
+    image_done(&alone);
+}
+
 static void memory_may_run_out(void **state)
 {
     (void)state;
@@ -220,12 +239,14 @@ static void memory_may_run_out(void **state)
     make(&a, 20, 20, "RGB", 0.5f);
     make(&b, 20, 20, "RGB", 0.25f);
     CompareResult r;
+    Image flip;
     Status status = ERR_MEMORY;
     for (long n = 1; status != OK; n++) {
         mem_fail_from(n);
-        status = image_compare(quiet(), &a, &b, &r);
+        status = image_compare_flip(quiet(), &a, &b, &r, &flip);
         mem_fail_from(0);
         assert_true(status == OK || status == ERR_MEMORY);
+        image_done(&flip);
         assert_true(n < 20);
     }
     image_done(&a);
@@ -243,6 +264,7 @@ int main(void)
         cmocka_unit_test(grey_is_all_three),
         cmocka_unit_test(what_cannot_be_compared_is_refused),
         cmocka_unit_test(difference_is_scaled),
+        cmocka_unit_test(the_flip_map_comes_with_the_metrics),
         cmocka_unit_test(memory_may_run_out),
     };
     return cmocka_run_group_tests_name("compare", tests, NULL, NULL);
