@@ -47,7 +47,7 @@ ALLCFLAGS := -std=c17 -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 $(BASEFLAGS)
 ALLCXXFLAGS := -std=c++17 $(BASEFLAGS) $(WARN) $(CXXFLAGS)
 LIBS     := $(PKGLIB) -lm -lstdc++ -lpthread
 
-.PHONY: all help deps demo check check-all check-kill check-study parity bench fuzz gallery floors headers install uninstall clean
+.PHONY: all help deps demo check check-all check-kill check-study parity bench bench-accuracy fuzz gallery floors headers install uninstall clean
 .DEFAULT_GOAL := all
 .SECONDARY:
 
@@ -107,6 +107,11 @@ bench: deps ## ratios against nanoflann, Embree and povray, measured in one run
 .PHONY: bench-built
 bench-built: $(B)/pms $(BENCH)
 	$(Q)PMS=$(B)/pms BUILD=$(B) tests/bench/run.sh
+
+bench-accuracy: deps ## estimated errors against true ones, for every scene (half an hour)
+	$(Q)$(MAKE) --no-print-directory $(B)/tests/bench/accuracy_bench
+	$(Q)$(B)/tests/bench/accuracy_bench scenes/*.pms
+	$(Q)$(B)/tests/bench/accuracy_bench -e 2 -n 5 -r 60 $(QUICK:%=scenes/%.pms)
 
 fuzz: deps ## fuzz the scene reader for a minute (needs clang with libFuzzer)
 	$(Q)tests/fuzz/run.sh

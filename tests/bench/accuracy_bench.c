@@ -1,0 +1,224 @@
+/* Estimated errors against true ones: of pictures of one pass and of several, with a quarter, all
+ * and four times the photons; and of renders that are asked for an error.
+ *
+ * accuracy_bench [-r SECONDS] [-e PERCENT] [-n SEEDS] SCENE...
+ *
+ * The truth is a long progressive render of the scene with random numbers of its own, of SECONDS.
+ * What that is wrong itself, by its own estimate, is taken off the square of the difference.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "base/mem.h"
+#include "base/work.h"
+#include "image/percentile.h"
+#include "render/render.h"
+#include "sdl/sdl.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { WIDTH = 160, HEIGHT = 120, PIXELS = WIDTH * HEIGHT, TRUTH_SEED = 77, CASES_MAX = 4096 };
+
+typedef struct Case {
+    double estimate, bound, truth;
+} Case;
+
+typedef struct Bench {
+    double seconds, error; /* of the reference; wanted, 0: none */
+    int seeds;
+    Diag diag;
+    Case cases[CASES_MAX];
+    int count;
+} Bench;
+
+static void say(void *ctx, const char *text)
+{
+    (void)ctx;
+    fputs(text, stderr);
+}
+
+static RenderOptions base_options(void)
+{
+    RenderOptions options = RENDER_OPTIONS_DEFAULT;
+    options.width = WIDTH;
+    options.height = HEIGHT;
+    options.threads = work_thread_count();
+    return options;
+}
+
+static void render(Bench *bench, const Scene *scene, const RenderOptions *options,
+                   RenderResult *out)
+{
+    if (render_scene(scene, options, &bench->diag, out) != OK)
+        exit(3);
+}
+
+static void colours_of(const RenderResult *result, float *out)
+{
+    for (size_t i = 0; i < PIXELS; i++)
+        memcpy(out + 3 * i, result->image.layers[0].pixels + 4 * i, 3 * sizeof *out);
+}
+
+/* --- a case --------------------------------------------------------------------------------- */
+
+typedef struct Truth {
+    float colours[3 * PIXELS];
+    double error;
+} Truth;
+
+static void make_truth(Bench *bench, const Scene *scene, Truth *out)
+{
+    RenderResult result;
+    RenderOptions options = base_options();
+    options.seed = TRUTH_SEED;
+    options.plan.is_progressive = true;
+    options.progressive.seconds = bench->seconds;
+    render(bench, scene, &options, &result);
+    colours_of(&result, out->colours);
+    out->error = result.error.whole;
+    render_result_done(&result);
+}
+
+/* Render, and print and keep how far estimate and truth are apart. */
+static void try_case(Bench *bench, const Scene *scene, const RenderOptions *options,
+                     const Truth *truth, const char *name)
+{
+    static float colours[3 * PIXELS];
+    RenderResult result;
+    double apart, started = clock_wall();
+    render(bench, scene, options, &result);
+    double seconds = clock_wall() - started;
+    colours_of(&result, colours);
+    if (!error_between(colours, truth->colours, PIXELS, &apart))
+        exit(3);
+    double own = sqrt(fmax(0, apart * apart - truth->error * truth->error));
+    Case *made = &bench->cases[bench->count++];
+    *made = (Case){result.error.whole, result.error.bound, own};
+    printf("%-20s %-16s %8.3f %8.3f %8.3f %7.2f %6s %7.1f\n", scene->path, name,
+           100 * made->estimate, 100 * made->bound, 100 * own,
+           own > 0 ? made->estimate / own : INFINITY, own <= made->bound ? "yes" : "no", seconds);
+    fflush(stdout);
+    render_result_done(&result);
+}
+
+/* --- a scene -------------------------------------------------------------------------------- */
+
+static Scene scaled_photons(const Scene *scene, double factor)
+{
+    Scene scaled = *scene;
+    PhotonSettings *photons = &scaled.settings.photons;
+    photons->count = (long)ceil((double)photons->count * factor);
+    photons->spacing /= sqrt(factor);
+    long global = scaled.settings.pms.global_count;
+    scaled.settings.pms.global_count = (long)ceil((double)(global > 0 ? global : 0) * factor);
+    return scaled;
+}
+
+static void try_photons(Bench *bench, const Scene *scene, const Truth *truth)
+{
+    static const double factors[] = {0.25, 1, 4};
+    for (int i = 0; i < 3; i++) {
+        Scene scaled = scaled_photons(scene, factors[i]);
+        RenderOptions options = base_options();
+        char name[32];
+        options.aa = AA_UNIFORM;
+        options.samples = 4;
+        snprintf(name, sizeof name, "x%g, 4 samples", factors[i]);
+        try_case(bench, &scaled, &options, truth, name);
+        options.samples = 1;
+        options.plan.is_progressive = true;
+        options.progressive.passes = 8;
+        snprintf(name, sizeof name, "x%g, 8 passes", factors[i]);
+        try_case(bench, &scaled, &options, truth, name);
+    }
+}
+
+static void try_seeds(Bench *bench, const Scene *scene, const Truth *truth)
+{
+    for (int seed = 0; seed < bench->seeds; seed++) {
+        RenderOptions options = base_options();
+        char name[32];
+        options.seed = (uint64_t)seed;
+        options.plan.is_progressive = true;
+        options.progressive.error = bench->error;
+        snprintf(name, sizeof name, "error %g%%, %d", 100 * bench->error, seed);
+        try_case(bench, scene, &options, truth, name);
+    }
+}
+
+static void try_scene(Bench *bench, const char *path)
+{
+    static Truth truth;
+    static const char *const folders[] = {"stdlib"};
+    SdlOptions sdl = {.library_paths = folders,
+                      .library_path_count = 1,
+                      .width = WIDTH,
+                      .height = HEIGHT,
+                      .threads = work_thread_count()};
+    Scene *scene;
+    if (sdl_load(&bench->diag, path, &sdl, &scene) != OK)
+        exit(2);
+    make_truth(bench, scene, &truth);
+    printf("%-20s %-16s %35.3f   (the reference)\n", path, "", 100 * truth.error);
+    if (bench->error > 0)
+        try_seeds(bench, scene, &truth);
+    else
+        try_photons(bench, scene, &truth);
+    scene_free(scene);
+}
+
+/* --- all ------------------------------------------------------------------------------------ */
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void print_summary(Bench *bench)
+{
+    double ratios[CASES_MAX];
+    int inside = 0, reached = 0, far = 0;
+    for (int i = 0; i < bench->count; i++) {
+        const Case *c = &bench->cases[i];
+        ratios[i] = c->truth > 0 ? c->estimate / c->truth : INFINITY;
+        inside += c->truth <= c->bound;
+        reached += c->truth <= bench->error;
+        far += c->truth > 1.5 * bench->error;
+    }
+    qsort(ratios, (size_t)bench->count, sizeof *ratios, compare_doubles);
+    printf(
+        "\n%d cases; truth within the bound in %.1f %%; estimate over truth %.2f in the median\n",
+        bench->count, 100.0 * inside / bench->count, ratios[bench->count / 2]);
+    if (bench->error > 0)
+        printf("truth within %g %% in %.1f %%, above %g %% in %d\n", 100 * bench->error,
+               100.0 * reached / bench->count, 150 * bench->error, far);
+}
+
+int main(int argc, char **argv)
+{
+    static Bench bench = {.seconds = 20, .seeds = 3};
+    int letter;
+    while ((letter = getopt(argc, argv, "r:e:n:")) != -1) {
+        if (letter == 'r')
+            bench.seconds = atof(optarg);
+        else if (letter == 'e')
+            bench.error = atof(optarg) / 100;
+        else if (letter == 'n')
+            bench.seeds = atoi(optarg);
+        else
+            return 2;
+    }
+    diag_init(&bench.diag, say, NULL);
+    printf("errors that 95 %% of the pixels are within, in %% of their luminance, %dx%d\n\n", WIDTH,
+           HEIGHT);
+    printf("%-20s %-16s %8s %8s %8s %7s %6s %7s\n", "scene", "photons, way", "estimate", "90 %",
+           "truth", "ratio", "within", "seconds");
+    for (int i = optind; i < argc; i++)
+        try_scene(&bench, argv[i]);
+    if (bench.count > 0)
+        print_summary(&bench);
+    diag_done(&bench.diag);
+    return 0;
+}
