@@ -22,6 +22,7 @@ CSRC     := $(foreach f,$(FLOORS),$(wildcard src/$(f)/*.c))
 CXXSRC   := $(wildcard src/image/*.cpp)
 LIBSRC   := $(filter-out src/cli/main.c,$(CSRC))
 LIBOBJ   := $(LIBSRC:%.c=$(B)/%.o) $(CXXSRC:%.cpp=$(B)/%.o)
+QUICK    := csg_showpiece glass_sphere macros_loops many_lights mesh_vase mirror_spot
 UNIT     := $(patsubst %.c,$(B)/%,$(wildcard tests/unit/*_test.c tests/physics/*_test.c \
             tests/hard/*_test.c tests/fault/*_test.c))
 PHYSICS  := $(filter $(B)/tests/physics/%,$(UNIT))
@@ -108,7 +109,7 @@ bench: deps ## ratios against nanoflann, Embree and povray, measured in one run
 bench-built: $(B)/pms $(BENCH)
 	$(Q)PMS=$(B)/pms BUILD=$(B) tests/bench/run.sh
 
-bench-accuracy: deps ## estimated errors against true ones, for every scene (half an hour)
+bench-accuracy: deps ## estimated errors against true ones, for every scene (an hour)
 	$(Q)$(MAKE) --no-print-directory $(B)/tests/bench/accuracy_bench
 	$(Q)$(B)/tests/bench/accuracy_bench scenes/*.pms
 	$(Q)$(B)/tests/bench/accuracy_bench -e 2 -n 5 -r 60 $(QUICK:%=scenes/%.pms)

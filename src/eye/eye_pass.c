@@ -201,10 +201,19 @@ static Rgb mean_rgb(const double sum[3], int count)
     return rgb((float)(sum[0] / count), (float)(sum[1] / count), (float)(sum[2] / count));
 }
 
+/* The standard error of a blurred sample, as its rays tell. */
+static Rgb blur_noise(const Blur *blur)
+{
+    double n = blur->count, scale = n > 1 ? 1 / (n * (n - 1)) : 0;
+    return rgb((float)sqrt(blur->squares[0] * scale), (float)sqrt(blur->squares[1] * scale),
+               (float)sqrt(blur->squares[2] * scale));
+}
+
 static void blur_mean(const Blur *blur, EyeSample *out)
 {
     for (int i = 0; i < PART_COUNT; i++)
         out->part[i] = mean_rgb(blur->part[i], blur->count);
+    out->part[PART_NOISE] = rgb_hypot(out->part[PART_NOISE], blur_noise(blur));
     out->alpha = (float)(blur->alpha / blur->count);
     out->depth = blur->depth;
     out->normal = v3_scale(blur->normal, 1.0 / blur->count);

@@ -40,12 +40,13 @@ void rows_tell_forced(const PlanOptions *options, PlanRow *rows)
     static const char asked[] = "asked for on the command line";
     for (int i = 0; i < FEATURE_COUNT; i++) {
         PlanRow *row = &rows[i];
-        char reason[sizeof row->reason - sizeof asked - 1];
+        char reason[sizeof row->reason];
         row->forced = options->effects[i];
         if (!row->is_on || row->forced != TRI_ON || strstr(row->reason, asked))
             continue;
-        snprintf(reason, sizeof reason, "%s", row->reason);
-        row_set(row, true, row->why, "%s: %s", asked, reason);
+        memcpy(reason, row->reason, sizeof reason);
+        row_set(row, true, row->why, "%s: %.*s", asked, (int)(sizeof reason - sizeof asked - 2),
+                reason);
     }
 }
 

@@ -11,6 +11,10 @@
  * blur is as wide as a gathering. */
 enum { NOISE_REACH = 1, BIAS_REACH = 3 };
 
+/* What the estimate does not see is allowed for by this factor in the bound: with few samples
+ * errors are lopsided, as where a rare highlight is missed by all of them. */
+#define BOUND_MARGIN 1.25
+
 /* The relative error that is black in the picture of the errors; 1 is white. */
 #define HEAT_LEAST 1e-3
 
@@ -24,7 +28,9 @@ Status error_map_init(ErrorMap *map, const Film *film, Diag *diag)
     map->bias = mem_array(pixels, sizeof(float));
     map->luminance = mem_array(pixels, sizeof(float));
     map->scratch = mem_array(pixels, sizeof(float));
-    if (map->noise && map->smooth && map->caustic && map->bias && map->luminance && map->scratch)
+    map->spare = mem_array(pixels, sizeof(float));
+    if (map->noise && map->smooth && map->caustic && map->bias && map->luminance && map->scratch &&
+        map->spare)
         return OK;
     error_map_done(map);
     return diag_no_memory(diag, "the errors of the picture");
@@ -38,6 +44,7 @@ void error_map_done(ErrorMap *map)
     mem_free(map->bias);
     mem_free(map->luminance);
     mem_free(map->scratch);
+    mem_free(map->spare);
     *map = (ErrorMap){.width = 0};
 }
 
@@ -96,6 +103,24 @@ static void average_around(float *values, float *scratch, int width, int height,
 
 /* --- the map -------------------------------------------------------------------------------- */
 
+/* Turn squares of biases, which are mostly noise, into biases: the mean over the pixels around is
+ * taken for one only as far as it is above its own standard error, else noise that happens to be
+ * positive would count as bias. */
+static void finish_bias(ErrorMap *map)
+{
+    const float around = (2 * BIAS_REACH + 1) * (2 * BIAS_REACH + 1);
+    size_t pixels = (size_t)map->width * (size_t)map->height;
+    for (size_t i = 0; i < pixels; i++)
+        map->spare[i] = map->bias[i] * map->bias[i];
+    average_around(map->bias, map->scratch, map->width, map->height, BIAS_REACH);
+    average_around(map->spare, map->scratch, map->width, map->height, BIAS_REACH);
+    for (size_t i = 0; i < pixels; i++) {
+        float mean = map->bias[i], variance = fmaxf(0, map->spare[i] - mean * mean);
+        float sure = mean - sqrtf(variance / around);
+        map->bias[i] = sure > 0 ? sqrtf(sure) : 0;
+    }
+}
+
 /* Average what was filled in pixel by pixel. */
 static void finish_map(ErrorMap *map)
 {
@@ -103,12 +128,11 @@ static void finish_map(ErrorMap *map)
     average_around(map->luminance, map->scratch, map->width, map->height, NOISE_REACH);
     average_around(map->smooth, map->scratch, map->width, map->height, NOISE_REACH);
     average_around(map->caustic, map->scratch, map->width, map->height, NOISE_REACH);
-    average_around(map->bias, map->scratch, map->width, map->height, BIAS_REACH);
     for (size_t i = 0; i < pixels; i++) {
         map->smooth[i] = sqrtf(map->smooth[i]);
         map->caustic[i] = sqrtf(map->caustic[i]);
-        map->bias[i] = map->bias[i] > 0 ? sqrtf(map->bias[i]) : 0;
     }
+    finish_bias(map);
 }
 
 void error_map_of_halves(const FilmSum halves[2], const Film *film, const SceneSettings *settings,
@@ -179,6 +203,8 @@ static double sampling_error2(const float *values, const float *clues, int sampl
     size_t i = (size_t)y * (size_t)map->width + (size_t)x;
     double value = (double)values[i], square = (double)clues[CLUE_SQUARE];
     double spread = square - value * value;
+    if (samples == 0)
+        return 0;
     if (samples > 1 && spread > SAME_SAMPLES * square)
         return spread / pow(samples, SPREAD_POWER);
     return BEND_PART * bend2(values, x, y, map->width, map->height);
@@ -240,7 +266,7 @@ ErrorFigure error_figure(const ErrorMap *map)
     figure.bias = error_percentile(errors, pixels, ERROR_PERCENTILE);
     fill_errors(map, 1, 1, errors);
     figure.whole = error_percentile(errors, pixels, ERROR_PERCENTILE);
-    figure.bound = error_bound(errors, map->width, map->height);
+    figure.bound = BOUND_MARGIN * error_bound(errors, map->width, map->height);
     return figure;
 }
 

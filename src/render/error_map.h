@@ -30,7 +30,7 @@ typedef struct ErrorMap {
     float *smooth; /* standard error, from the noise of the pixels around */
     float *caustic; /* as smooth, of the light of the caustic map alone; 0 of a single pass */
     float *bias;    /* magnitude */
-    float *scratch;
+    float *scratch, *spare; /* to work with */
 } ErrorMap;
 
 /* Make a map for films like this one.  Free with error_map_done. */
@@ -43,7 +43,8 @@ void error_map_of_halves(const FilmSum halves[2], const Film *film, const SceneS
 
 /* Fill the map for a film with clues of a single pass, in working values.
  *
- * samples  of the pixels that have more than one. */
+ * samples  of the pixels that have more than one; 0: each is spread over its pixel, and its noise
+ *          says what that leaves. */
 void error_map_of_film(const Film *film, int samples, const SceneSettings *settings, ErrorMap *map);
 
 /* Return the mean luminance. */

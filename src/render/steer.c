@@ -17,8 +17,8 @@
 /* The relative error that 95 % are within, of a normal distribution with a standard error of 1. */
 #define NORMAL_95 1.96
 
-/* Noise aims a little below what is wanted: the bound is above the figure. */
-#define AIM 0.9
+/* Noise aims below what is wanted: the bound is above the figure. */
+#define AIM 0.72
 
 /* Rounds of bisection for the level. */
 enum { LEVEL_ROUNDS = 40 };

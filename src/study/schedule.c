@@ -45,6 +45,8 @@ double schedule_cost(const Study *study, int point)
     double measured = measured_cost(study, point), most = 0, factor = 1;
     if (!isnan(measured))
         return measured;
+    if (study->points[point].seconds > 0)
+        return study->points[point].seconds;
     for (int i = 1; i < study->count; i++) {
         double other = measured_cost(study, i), model = model_cost(study, &study->points[i]);
         bool is_same = is_like(&study->points[i], &study->points[point]);

@@ -443,15 +443,35 @@ static double passes_own(const StudyBase *base)
     return 1;
 }
 
-static Status passes_set(const StudyBase *base, double value, StudyPoint *point)
+/* Make a point one of many passes of one sample each. */
+static void set_passes(const ProgressiveOptions *passes, StudyPoint *point)
 {
     point->options.plan.is_progressive = true;
     point->options.aa = AA_UNIFORM;
     point->options.samples = 1;
-    point->options.progressive = (ProgressiveOptions){.passes = (uint64_t)value};
+    point->options.progressive = *passes;
+}
+
+static Status passes_set(const StudyBase *base, double value, StudyPoint *point)
+{
+    set_passes(&(ProgressiveOptions){.passes = (uint64_t)value}, point);
     point->photon_cost *= value;
     point->eye_cost *= value / samples_own(base);
     say(point, "--progressive --passes %.0f", value);
+    say_limits(base, point);
+    return OK;
+}
+
+static double timed_own(const StudyBase *base)
+{
+    return passes_own(base);
+}
+
+static Status timed_set(const StudyBase *base, double value, StudyPoint *point)
+{
+    set_passes(&(ProgressiveOptions){.seconds = value}, point);
+    point->seconds = value;
+    say(point, "--time %.0fs", value);
     say_limits(base, point);
     return OK;
 }

@@ -47,6 +47,7 @@ typedef struct StudyPoint {
     Scene scene;                   /* the study's, with this change */
     RenderOptions options;
     double photon_cost, eye_cost; /* seconds expected, over those of the scene as it stands */
+    double seconds;               /* it takes, if that is set; else 0 */
 } StudyPoint;
 
 /* Return the name of a setting, as files have it, and its title. */
