@@ -1,4 +1,5 @@
 /* Other programs, run and waited for.  SPDX-License-Identifier: Apache-2.0 */
+#define _GNU_SOURCE /* posix_spawn_file_actions_addchdir_np */
 #include "base/child.h"
 
 #include <errno.h>
@@ -21,7 +22,8 @@ static void set_signals(posix_spawnattr_t *attributes)
     posix_spawnattr_setflags(attributes, POSIX_SPAWN_SETSIGDEF);
 }
 
-static int start(char *const *words, const char *output, const char *log, pid_t *child)
+static int start(char *const *words, const char *folder, const char *output, const char *log,
+                 pid_t *child)
 {
     const int write = O_WRONLY | O_CREAT | O_TRUNC;
     posix_spawn_file_actions_t files;
@@ -35,6 +37,8 @@ static int start(char *const *words, const char *output, const char *log, pid_t 
         posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
         posix_spawn_file_actions_addopen(&files, 1, output, write, 0666);
         posix_spawn_file_actions_addopen(&files, 2, log, write, 0600);
+        if (folder)
+            posix_spawn_file_actions_addchdir_np(&files, folder);
         error = posix_spawnp(child, words[0], &files, &attributes, words, environ);
         posix_spawnattr_destroy(&attributes);
     }
@@ -42,11 +46,11 @@ static int start(char *const *words, const char *output, const char *log, pid_t 
     return error;
 }
 
-Status child_run(Diag *diag, char *const *words, const char *output, const char *log,
-                 int *wait_status)
+Status child_run(Diag *diag, char *const *words, const char *folder, const char *output,
+                 const char *log, int *wait_status)
 {
     pid_t child;
-    int error = start(words, output, log, &child);
+    int error = start(words, folder, output, log, &child);
     if (error == ENOENT)
         return ERR_FILE;
     if (error)

@@ -94,12 +94,14 @@ static Status measure(const Args *args, Explanation *e)
 {
     RenderOptions options = e->options;
     const ProgressiveOptions *progressive = &options.progressive;
-    if (options.plan.is_progressive && !progressive->passes && !(progressive->seconds > 0))
+    bool has_end = progressive->passes || progressive->seconds > 0 || progressive->error > 0;
+    if (options.plan.is_progressive && !has_end)
         return diag_fail(args->diag, ERR_USAGE,
-                         "--measure wants --passes or --time beside "
+                         "--measure wants --passes, --time or --error beside "
                          "--progressive: a render that ends");
     options.is_watched = true;
     options.progressive.state_path = NULL;
+    options.progressive.is_resumed = false;
     Progress progress;
     TRY(progress_init(&progress, args));
     options.progress = progress_show;

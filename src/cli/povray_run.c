@@ -151,7 +151,7 @@ static Status run(const Args *args, char *const *words, const char *log, SideRun
 {
     double wall = clock_wall(), cpu = children_cpu();
     int wait_status;
-    Status status = child_run(args->diag, words, "/dev/null", log, &wait_status);
+    Status status = child_run(args->diag, words, NULL, "/dev/null", log, &wait_status);
     if (status == ERR_FILE)
         return diag_fail(args->diag, ERR_LIBRARY,
                          "povray is not installed (validate runs it on the same scene)");

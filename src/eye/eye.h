@@ -44,8 +44,8 @@ typedef struct EyeOptions {
 } EyeOptions;
 
 typedef struct EyeSample {
-    Rgb part[PART_COUNT]; /* radiance; without limits.has_error blur is black, and noise that
-                             of focal blur */
+    Rgb part[PART_COUNT]; /* radiance; blur and noise are black without limits.has_error */
+    Rgb lens_noise;       /* standard error that the rays of focal blur leave */
     float alpha;          /* 1 - transmit of the ray */
     double depth;         /* distance to the first surface, scene units; infinite: none */
     V3 normal;            /* of the first surface, world, facing the camera; 0: none */

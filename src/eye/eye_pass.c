@@ -213,7 +213,7 @@ static void blur_mean(const Blur *blur, EyeSample *out)
 {
     for (int i = 0; i < PART_COUNT; i++)
         out->part[i] = mean_rgb(blur->part[i], blur->count);
-    out->part[PART_NOISE] = rgb_hypot(out->part[PART_NOISE], blur_noise(blur));
+    out->lens_noise = blur_noise(blur);
     out->alpha = (float)(blur->alpha / blur->count);
     out->depth = blur->depth;
     out->normal = v3_scale(blur->normal, 1.0 / blur->count);

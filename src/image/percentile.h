@@ -9,6 +9,9 @@
 /* So many of the pixels are to be below the figure. */
 #define ERROR_PERCENTILE 0.95
 
+/* 95 % of the values of a normal distribution are within so many standard deviations. */
+#define NORMAL_95 1.96
+
 /* Return what the error of a pixel is measured by: its luminance, but in the dark (below about a
  * tenth of the picture's mean luminance) this tenth. */
 double error_scale(double luminance, double mean);

@@ -25,7 +25,8 @@
 /* Luminances of linear light, of every pixel. */
 typedef struct ErrorMap {
     int width, height;
-    float *luminance; /* of the picture, averaged over neighbours */
+    float *value;     /* of the picture */
+    float *luminance; /* the same, averaged over neighbours */
     float *noise;  /* an error as chance may make it, of either sign */
     float *smooth; /* standard error, from the noise of the pixels around */
     float *caustic; /* as smooth, of the light of the caustic map alone; 0 of a single pass */
@@ -43,9 +44,16 @@ void error_map_of_halves(const FilmSum halves[2], const Film *film, const SceneS
 
 /* Fill the map for a film with clues of a single pass, in working values.
  *
- * samples  of the pixels that have more than one; 0: each is spread over its pixel, and its noise
- *          says what that leaves. */
-void error_map_of_film(const Film *film, int samples, const SceneSettings *settings, ErrorMap *map);
+ * samples    of the pixels that have more than one.
+ * is_spread  each is spread over its pixel, as by focal blur. */
+void error_map_of_film(const Film *film, int samples, bool is_spread, const SceneSettings *settings,
+                       ErrorMap *map);
+
+/* Return the relative standard error of a pixel as those around it tell, without its own samples:
+ * for what decides on more of them, else lucky ones would be diluted and unlucky ones kept.
+ *
+ * mean  luminance of the picture. */
+double error_map_around(const ErrorMap *map, size_t pixel, double mean);
 
 /* Return the mean luminance. */
 double error_map_mean(const ErrorMap *map);

@@ -50,7 +50,7 @@ static bool add_layers(Film *film, unsigned use)
     }
     film->has_clues = use & FILM_CLUES;
     film->channels += film->has_clues ? CLUE_CHANNELS : 0;
-    return !film->has_clues || image_add_layer(&film->image, "clues", "NBCS");
+    return !film->has_clues || image_add_layer(&film->image, "clues", "NBCSL");
 }
 
 Status film_init(Film *film, const RenderOptions *options, unsigned use, Diag *diag)
@@ -114,6 +114,8 @@ void film_vector(const Film *film, const EyeSample *s, float *out)
     at[CLUE_NOISE] = rgb_luminance(s->part[PART_NOISE]);
     at[CLUE_BLUR] = rgb_luminance(s->part[PART_BLUR]);
     at[CLUE_CAUSTIC] = rgb_luminance(s->part[PART_CAUSTIC]);
+    float lens = rgb_luminance(s->lens_noise);
+    at[CLUE_LENS] = lens * lens;
     at[CLUE_SQUARE] = rgb_luminance(beauty) * rgb_luminance(beauty);
 }
 

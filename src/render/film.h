@@ -15,6 +15,7 @@ typedef enum ClueChannel {
     CLUE_BLUR,    /* see LightEstimate */
     CLUE_CAUSTIC, /* light of the caustic map */
     CLUE_SQUARE,  /* of the whole light */
+    CLUE_LENS,    /* square of the standard error that the rays of focal blur leave */
     CLUE_CHANNELS
 } ClueChannel;
 

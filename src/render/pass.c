@@ -8,9 +8,11 @@
  * on another one: walls of a corner do not light each other. */
 #define GATHER_NORMAL_COSINE 0.5
 
-/* Photons that set the gather radius at a point in the first of many passes.  Fewer than in a
- * single pass: their noise is averaged away. */
-enum { SERIES_PHOTONS = 12 };
+/* Photons gathered at a point in the first of many passes, about.  Fewer than in a single pass:
+ * their noise is averaged away.  They lie within a part of the radius that more photons set: had
+ * that radius itself a photon on its border, that one would count half too little where photons are
+ * spread evenly, as those of a beam are. */
+enum { SERIES_PHOTONS = 12, SERIES_REACH = 48 };
 
 /* That radius is at most so many times what it is where the map is of common density
  * (photon_map_radius). */
@@ -90,8 +92,8 @@ static GatherLimits series_limits(const Pass *pass, const PhotonMap *map, double
                            : photon_map_radius(map, miniature_photons(miniature, SERIES_PHOTONS));
     GatherLimits limits = gather_limits(pass, asked > 0 ? part * *first : SERIES_WIDEN * *first, 0);
     limits.min_photons = 0;
-    limits.max_photons = asked > 0 ? 0 : miniature_photons(miniature, SERIES_PHOTONS) + 1;
-    limits.shrink = asked > 0 ? 0 : part;
+    limits.max_photons = asked > 0 ? 0 : miniature_photons(miniature, SERIES_REACH) + 1;
+    limits.shrink = asked > 0 ? 0 : part * sqrt((double)SERIES_PHOTONS / SERIES_REACH);
     return limits;
 }
 

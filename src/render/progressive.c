@@ -58,6 +58,8 @@ typedef struct Series {
     uint64_t measured_at; /* passes that the errors are known of */
     bool is_steered;      /* samples go where errors are */
     bool is_told;         /* what is going to be done */
+    bool is_reached;      /* the error wanted, when a plan was due: between plans errors are known
+                             by chance, as when a picture is shown */
     Pace pace;
     uint64_t passes_asked; /* stop after so many */
     double passes_started; /* seconds of clock_wall */
@@ -277,7 +279,8 @@ static void plan_passes(Series *s)
     if (!s->is_steered || passes_done(s) < s->state.steering.until)
         return;
     measure(s);
-    if (!s->out->error.is_known || is_error_reached(s))
+    s->is_reached = is_error_reached(s);
+    if (!s->out->error.is_known || s->is_reached)
         return;
     SteeringGoal goal = {.error = s->asked->progressive.error,
                          .photon_work = photon_work(&s->state),
@@ -296,7 +299,7 @@ enum { PASSES_SURE = 2 };
 /* Return how much of the next pass is to be made; 0: none of it. */
 static double next_part(const Series *s)
 {
-    if (work_ending || passes_done(s) >= s->passes_asked || is_error_reached(s))
+    if (work_ending || passes_done(s) >= s->passes_asked || s->is_reached)
         return 0;
     if (passes_done(s) < (s->is_steered ? PASSES_SURE : 1))
         return 1;
@@ -390,6 +393,8 @@ static Status run_passes(Series *s)
     s->passes_started = s->last_shown = clock_wall();
     work_is_patient = 1;
     Status status = try_pass(s);
+    if (status == OK && passes_done(s) > 0)
+        plan_passes(s);
     while (status == OK && (part = next_part(s)) > 0) {
         status = run_pass(s, part);
         if (status == OK)
@@ -432,6 +437,8 @@ static Status resume(Series *s)
         diag_warn(s->diag, WARN_FILE, SPAN_NONE,
                   "there is no '%s' to resume from: starting with the first pass",
                   progressive->state_path);
+    if (!s->is_steered)
+        steering_even(&s->state.steering, (float)s->options.samples);
     s->last_shown_pass = passes_done(s);
     s->out->last_radii = scaled(s->state.first, progressive_shrink(passes_done(s)));
     if (passes_done(s) > s->passes_asked)

@@ -36,14 +36,11 @@ static void take_result(Film *film, PassResult *pass, RenderResult *out)
     pass->books = (PhotonBooks){0};
 }
 
-/* How many samples a pixel has that has more than one; with focal blur a sample is as good as many.
- */
-static int samples_of(const RenderOptions *options, const Plan *plan)
+/* How many samples a pixel has that has more than one; `rays` of focal blur count as samples. */
+static int samples_of(const RenderOptions *options, int rays)
 {
-    if (plan_has(plan, FEATURE_FOCAL_BLUR))
-        return 0;
     if (options->aa == AA_UNIFORM)
-        return options->samples;
+        return (options->samples > rays ? options->samples + rays - 1 : rays) / rays;
     return options->aa == AA_NONE ? 1 : options->aa_depth * options->aa_depth;
 }
 
@@ -53,7 +50,9 @@ static Status show_film(const Scene *scene, const RenderOptions *options, Film *
 {
     ErrorMap errors;
     TRY(error_map_init(&errors, film, diag));
-    error_map_of_film(film, samples_of(options, &out->plan), &scene->settings, &errors);
+    bool is_blurred = plan_has(&out->plan, FEATURE_FOCAL_BLUR);
+    int samples = samples_of(options, is_blurred ? scene->camera.blur_samples : 1);
+    error_map_of_film(film, samples, is_blurred, &scene->settings, &errors);
     film_linearize(&film->image, &scene->settings);
     out->error = error_figure(&errors);
     Status status = film_show_errors(film, diag);

@@ -14,9 +14,6 @@
  * the global map is gathered; it is not known apart. */
 #define HIDDEN_PHOTON_PART 0.1
 
-/* The relative error that 95 % are within, of a normal distribution with a standard error of 1. */
-#define NORMAL_95 1.96
-
 /* Noise aims below what is wanted: the bound is above the figure. */
 #define AIM 0.72
 
@@ -30,9 +27,14 @@ Status steering_init(Steering *steering, const Film *film, float rate, uint64_t 
     steering->rate = mem_array(pixels, sizeof *steering->rate);
     if (!steering->rate)
         return diag_no_memory(diag, "the samples of pixels");
-    for (size_t i = 0; i < pixels; i++)
-        steering->rate[i] = rate;
+    steering_even(steering, rate);
     return OK;
+}
+
+void steering_even(Steering *steering, float rate)
+{
+    for (size_t i = 0; i < steering->pixels; i++)
+        steering->rate[i] = rate;
 }
 
 void steering_done(Steering *steering)
@@ -57,7 +59,7 @@ static double rate_for(const Planning *p, size_t i, double level)
 {
     const ErrorMap *map = p->map;
     double error = (double)map->smooth[i], caustic = (double)map->caustic[i];
-    double relative = error / error_scale((double)map->luminance[i], p->mean);
+    double relative = error_map_around(map, i, p->mean);
     double taken = (double)p->halves[0].good[i] + (double)p->halves[1].good[i];
     double wanted = taken * (relative * relative / (level * level) - 1) / p->passes;
     double photon_part = error > 0 ? caustic * caustic / (error * error) : 0;

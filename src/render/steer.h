@@ -26,6 +26,9 @@ typedef struct Steering {
 Status steering_init(Steering *steering, const Film *film, float rate, uint64_t until, Diag *diag);
 void steering_done(Steering *steering);
 
+/* Let every pixel have so many samples in every pass. */
+void steering_even(Steering *steering, float rate);
+
 /* What a plan is made for. */
 typedef struct SteeringGoal {
     double error;         /* relative error wanted; 0: as little as there is work for */

@@ -112,11 +112,8 @@ static void begin_svg(const Script *s, const char *name, int width, int height)
 {
     fprintf(s->file,
             "reset\nset terminal svg name '%s' size %d,%d dynamic enhanced font "
-            "'Helvetica,Arial,sans-serif,14' background '#ffffff'\nset output '",
-            name, width, height);
-    for (const char *c = s->study->options.folder; *c; c++)
-        fputs(*c == '\'' ? "''" : (char[]){*c, 0}, s->file);
-    fprintf(s->file, "/%s.svg'\n", name);
+            "'Helvetica,Arial,sans-serif,14' background '#ffffff'\nset output '%s.svg'\n",
+            name, width, height, name);
     fputs("set border 3 lc rgb '#666666'\nset tics nomirror out scale 0.6\n"
           "set grid xtics ytics lc rgb '#e4e4e4' lt 1 lw 1\n",
           s->file);
@@ -345,14 +342,17 @@ static Status write_script(const Study *study, const char *path)
     return fclose(file) == 0 ? OK : diag_fail(study->diag, ERR_FILE, "cannot write '%s'", path);
 }
 
-/* Run it; *is_good tells whether it drew.  A report without plots is better than none. */
-static Status run_gnuplot(const Study *study, char *script, const char *log, bool *is_good)
+#define SCRIPT_NAME "study.gp"
+
+/* Run it in the folder of the study, so that no name that a user chose is a part of the script;
+ * *is_good tells whether it drew.  A report without plots is better than none. */
+static Status run_gnuplot(const Study *study, const char *log, bool *is_good)
 {
-    char *words[] = {"gnuplot", script, NULL};
+    char *words[] = {"gnuplot", SCRIPT_NAME, NULL};
     const char *text;
     size_t size;
     int ended;
-    Status status = child_run(study->diag, words, "/dev/null", log, &ended);
+    Status status = child_run(study->diag, words, study->options.folder, "/dev/null", log, &ended);
     *is_good = status == OK && WIFEXITED(ended) && WEXITSTATUS(ended) == 0;
     if (*is_good)
         return OK;
@@ -397,12 +397,12 @@ Status plots_make(const Study *study, Arena *arena, Plots *out)
     char script[FILE_PATH_MAX], log[FILE_PATH_MAX];
     bool is_good = false;
     *out = (Plots){0};
-    snprintf(script, sizeof script, "%s/study.gp", study->options.folder);
+    snprintf(script, sizeof script, "%s/" SCRIPT_NAME, study->options.folder);
     snprintf(log, sizeof log, "%s/gnuplot.log", study->options.folder);
     remove_file(study, "study.svg");
     Status status = write_script(study, script);
     if (status == OK)
-        status = run_gnuplot(study, script, log, &is_good);
+        status = run_gnuplot(study, log, &is_good);
     if (status == OK && is_good)
         status = read_svg(study, arena, "study", &out->main);
     if (status == OK && is_good)

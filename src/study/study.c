@@ -109,8 +109,9 @@ static Status describe(const Study *study, char text[CHECKPOINT_SETTINGS_MAX])
     checkpoint_describe(study->base.scene, render, text);
     size_t used = strlen(text);
     used += (size_t)snprintf(text + used, CHECKPOINT_SETTINGS_MAX - used,
-                             "antialiasing %d %g %d %g\n", (int)render->aa, render->aa_threshold,
-                             render->aa_depth, render->aa_has_jitter ? render->aa_jitter : 0);
+                             "threads %d\nantialiasing %d %g %d %g\n", render->threads,
+                             (int)render->aa, render->aa_threshold, render->aa_depth,
+                             render->aa_has_jitter ? render->aa_jitter : 0);
     return describe_reference(study, text + used, CHECKPOINT_SETTINGS_MAX - used);
 }
 

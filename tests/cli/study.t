@@ -123,4 +123,12 @@ ok $? "without gnuplot: tables, and what to install"
 run timeout 100 "$PMS" study s.pms $size --time=1s -o given --reference=ref.exr --json --progress=json
 [ "$code" -eq 0 ] && grep -q '"recommended": \[' out && ! grep -q '"percent": 100' err
 ok $? "JSON to standard output; progress is never done too early"
+# A folder's name is no part of what gnuplot reads.
+evil=$(printf 'a\nset print "PWNED"; print "owned"\n#')
+run timeout 100 "$PMS" study s.pms $size --time=2s -o "$evil"
+[ "$code" -eq 0 ] && [ ! -e PWNED ] && [ ! -e "$evil/PWNED" ] && grep -q "<svg" "$evil/study.html"
+ok $? "a folder named like a command of gnuplot's"
+run timeout 100 "$PMS" study s.pms $size --time=2s --output=-dash
+[ "$code" -eq 0 ] && grep -q "<svg" ./-dash/study.html
+ok $? "or like an option"
 plan

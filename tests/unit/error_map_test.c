@@ -163,6 +163,25 @@ static void bias_is_found_in_noise(void **state)
     unmake(&made);
 }
 
+/* One pixel in a hundred has seen light, in one of the halves: more than 95 % agree on black, but
+ * the mean of 164 pixels is known to 1.96 / sqrt(164) only. */
+static void rare_light_is_no_accuracy(void **state)
+{
+    (void)state;
+    Made made;
+    make(&made);
+    for (int half = 0; half < 2; half++) {
+        for (int i = 0; i < PIXELS; i++) {
+            set_pixel(&made.film, i, i % 100 == 0 && i / 100 % 2 == half ? 1 : 0, 0);
+            made.film.samples[i].wanted = made.film.samples[i].good = 1;
+        }
+        film_sum_add(&made.halves[half], &made.film);
+    }
+    error_map_of_halves(made.halves, &made.film, &LINEAR, &made.map);
+    assert_true(fabs(error_figure(&made.map).whole / (1.96 / sqrt(164)) - 1) < 0.02);
+    unmake(&made);
+}
+
 /* Errors are those of linear light where the scene works on other values: here its square. */
 static void errors_are_of_linear_light(void **state)
 {
@@ -194,7 +213,7 @@ static void edges_without_antialiasing_are_seen(void **state)
         set_pixel(&made.film, i, edge > 0 ? 1 : 0, 0);
         truth2 += pow(part - (edge > 0), 2);
     }
-    error_map_of_film(&made.film, 1, &LINEAR, &made.map);
+    error_map_of_film(&made.film, 1, false, &LINEAR, &made.map);
     for (int i = 0; i < PIXELS; i++)
         estimate2 += (double)made.map.smooth[i] * (double)made.map.smooth[i];
     assert_true(estimate2 / truth2 > 0.7 && estimate2 / truth2 < 1.5);
@@ -209,7 +228,7 @@ static void slopes_are_no_error(void **state)
     make(&made);
     for (int i = 0; i < PIXELS; i++)
         set_pixel(&made.film, i, (float)(i % SIDE) / SIDE, 0);
-    error_map_of_film(&made.film, 1, &LINEAR, &made.map);
+    error_map_of_film(&made.film, 1, false, &LINEAR, &made.map);
     assert_true(error_figure(&made.map).whole < 1e-4);
     unmake(&made);
 }
@@ -223,6 +242,7 @@ int main(void)
         cmocka_unit_test(what_is_sure_widens_no_bound),
         cmocka_unit_test(the_difference_of_halves_is_the_noise),
         cmocka_unit_test(bias_is_found_in_noise),
+        cmocka_unit_test(rare_light_is_no_accuracy),
         cmocka_unit_test(errors_are_of_linear_light),
         cmocka_unit_test(edges_without_antialiasing_are_seen),
         cmocka_unit_test(slopes_are_no_error),

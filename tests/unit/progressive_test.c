@@ -282,6 +282,27 @@ static void an_error_wanted_ends_a_render(void **state)
     done(&run);
 }
 
+/* Where it ends is the same whether pictures are shown, which measures them, or not; and going on
+ * from the end makes no pass more. */
+static void showing_ends_no_render(void **state)
+{
+    (void)state;
+    Run few = passes(EVERYTHING, 4), plain = new_run(EVERYTHING), kept = new_run(EVERYTHING);
+    plain.options.progressive.error = kept.options.progressive.error = 0.7 * few.result.error.bound;
+    assert_int_equal(go(&plain), OK);
+    kept.options.progressive.state_path = in_folder("shown");
+    assert_int_equal(go(&kept), OK);
+    assert_int_equal(kept.result.passes, plain.result.passes);
+    done(&kept);
+    kept.options.progressive.is_resumed = true;
+    assert_int_equal(go(&kept), OK);
+    assert_int_equal(kept.result.passes, plain.result.passes);
+    assert_int_equal(kept.result.new_passes, 0);
+    done(&few);
+    done(&plain);
+    done(&kept);
+}
+
 /* The plan is kept with the sums: 4 passes, 2 of the next plan, and the rest. */
 static void a_steered_render_may_be_spread_over_runs_and_threads(void **state)
 {
@@ -456,6 +477,7 @@ int main(void)
         cmocka_unit_test(an_interrupted_render_has_whole_passes),
         cmocka_unit_test(time_ends_a_render_after_a_pass_of_each_half),
         cmocka_unit_test(an_error_wanted_ends_a_render),
+        cmocka_unit_test(showing_ends_no_render),
         cmocka_unit_test(a_steered_render_may_be_spread_over_runs_and_threads),
         cmocka_unit_test(a_full_disk_stops_only_the_beginning),
         cmocka_unit_test(a_state_of_more_passes_is_shown_as_it_is),

@@ -40,7 +40,7 @@ static void make(Made *made, float above, float below, float caustic)
     assert_int_equal(error_map_init(&made->map, &made->film, NULL), OK);
     for (size_t i = 0; i < PIXELS; i++) {
         made->state.halves[0].good[i] = made->state.halves[1].good[i] = 2;
-        made->map.luminance[i] = 1;
+        made->map.luminance[i] = made->map.value[i] = 1;
         made->map.smooth[i] = made->map.noise[i] = is_above(i) ? above : below;
         made->map.caustic[i] = caustic;
     }
@@ -101,6 +101,23 @@ static void samples_share_photons_only_while_it_helps(void **state)
         made.map.caustic[i] = 0;
     plan(&made, 0, 9.0 * PIXELS);
     assert_true(fabs((double)made.state.steering.rate[0] - 9) < 0.01);
+    unmake(&made);
+}
+
+/* What a pixel's own samples seem to be has no say in how many more it gets. */
+static void lucky_pixels_get_as_many_as_others(void **state)
+{
+    (void)state;
+    Made made;
+    size_t middle = SIDE * SIDE / 2 + SIDE / 2;
+    make(&made, 0.1f, 0.1f, 0);
+    made.map.noise[middle] = 0.4f; /* and its smooth error, from 9 pixels, is */
+    made.map.smooth[middle] = (float)sqrt((8 * 0.1 * 0.1 + 0.4 * 0.4) / 9);
+    made.map.value[middle] = 3;
+    made.map.luminance[middle] = (8 * 1 + 3) / 9.0f;
+    plan(&made, 0, 0);
+    const float *rate = made.state.steering.rate;
+    assert_true(fabs((double)(rate[middle] / rate[0]) - 1) < 1e-3);
     unmake(&made);
 }
 
@@ -184,6 +201,7 @@ int main(void)
         cmocka_unit_test(samples_make_errors_alike),
         cmocka_unit_test(samples_stop_where_the_error_is_reached),
         cmocka_unit_test(samples_share_photons_only_while_it_helps),
+        cmocka_unit_test(lucky_pixels_get_as_many_as_others),
         cmocka_unit_test(plans_end_where_the_goal_is_expected),
         cmocka_unit_test(parts_of_samples_are_dealt_out_evenly),
         cmocka_unit_test(the_last_pass_is_as_much_as_there_is_time_for),
