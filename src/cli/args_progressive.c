@@ -81,6 +81,10 @@ Status args_progressive(const Args *args, RenderOptions *out)
         return diag_fail(args->diag, ERR_USAGE,
                          "+A has no meaning with --progressive, --time and --error, whose passes "
                          "each take --aa samples of a pixel");
+    if (out->samples > UINT16_MAX)
+        return diag_fail(args->diag, ERR_USAGE,
+                         "a pass takes at most %d samples of a pixel, got --aa %d", UINT16_MAX,
+                         out->samples);
     TRY(args_int(args, OPT_PASSES, 1, UINT32_MAX, 0, &passes));
     TRY(args_time(args, &progressive->seconds));
     TRY(read_error(args, &progressive->error));

@@ -89,6 +89,6 @@ ok $? "--measure with passes"
 run "$PMS" explain "$T/blind.pms" -w 32 --height 24 --aa 4
 [ "$code" -eq 0 ] && grep -qE "^any picture +3.1 k .*camera rays$" "$T/out"
 ok $? "samples of pixels count"
-fails 2 "--measure wants --passes or --time" "a render that does not end" \
+fails 2 "--measure wants --passes, --time or --error" "a render that does not end" \
     "$PMS" explain "$T/blind.pms" --measure --progressive
 plan

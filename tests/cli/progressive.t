@@ -138,6 +138,8 @@ for error in 0% -1% 2 x% 200% nan% 1%%; do
     fails 2 "a percentage" "--error='$error'" "$PMS" "$T/s.pms" --error="$error" -o "$T/a.exr"
 done
 
+fails 2 "at most 65535 samples" "more samples than a pass can have" $P --passes=1 --aa=100000 -o "$T/a.exr"
+
 # An error that is wanted: reached, or said not to be; whole pictures without a state; the same
 # bytes on any number of threads.
 for threads in 1 3; do
