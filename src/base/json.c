@@ -25,3 +25,15 @@ void json_number(FILE *file, double number)
     else
         fputs("null", file);
 }
+
+void json_field(FILE *file, const char *name, double number)
+{
+    fprintf(file, ", \"%s\": ", name);
+    json_number(file, number);
+}
+
+void json_text(FILE *file, const char *name, const char *text)
+{
+    fprintf(file, ", \"%s\": ", name);
+    json_string(file, text);
+}

@@ -8,4 +8,8 @@
 void json_string(FILE *file, const char *text);
 void json_number(FILE *file, double number);
 
+/* Print one more member of an object: ", "name": " and its value. */
+void json_field(FILE *file, const char *name, double number);
+void json_text(FILE *file, const char *name, const char *text);
+
 #endif

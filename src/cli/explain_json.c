@@ -15,8 +15,7 @@ static void print_feature(const Explanation *e, int id)
     json_string(stdout, row->reason);
     if (row->why.source) {
         Place place = span_place(row->why);
-        printf(", \"file\": ");
-        json_string(stdout, row->why.source->path);
+        json_text(stdout, "file", row->why.source->path);
         printf(", \"line\": %d, \"column\": %d", place.line, place.column);
     }
     putchar('}');
@@ -50,10 +49,8 @@ static void print_lights(const Explanation *e, const MapRows *map)
     for (int i = 0; books && i < map->count; i++) {
         printf("%s\n    {\"light\": ", i ? "," : "");
         json_string(stdout, books[i].name);
-        printf(", \"power\": ");
-        json_number(stdout, books[i].power);
-        printf(", \"share\": ");
-        json_number(stdout, books[i].share);
+        json_field(stdout, "power", books[i].power);
+        json_field(stdout, "share", books[i].share);
         printf(", \"photons\": %" PRIu64, books[i].budget);
         print_fate("expected", &books[i]);
         if (map->had)
@@ -66,10 +63,8 @@ static void print_lights(const Explanation *e, const MapRows *map)
         return;
     printf(",\n  \"%s_asked\": {\"count\": ", map->name);
     json_number(stdout, map->asked.count);
-    printf(", \"spacing\": ");
-    json_number(stdout, map->asked.spacing);
-    printf(", \"global_photons\": ");
-    json_number(stdout, map->asked.global);
+    json_field(stdout, "spacing", map->asked.spacing);
+    json_field(stdout, "global_photons", map->asked.global);
     putchar('}');
 }
 
@@ -80,8 +75,7 @@ static void print_passes(const Explanation *e)
         return;
     printf(",\n  \"progressive\": {\"passes\": ");
     json_number(stdout, progressive->passes ? (double)progressive->passes : NAN);
-    printf(", \"seconds\": ");
-    json_number(stdout, progressive->seconds > 0 ? progressive->seconds : NAN);
+    json_field(stdout, "seconds", progressive->seconds > 0 ? progressive->seconds : NAN);
     printf(", \"samples\": %d, \"last_radius\": ", e->options.samples > 1 ? e->options.samples : 1);
     json_number(stdout, progressive->passes ? progressive_shrink(progressive->passes) : NAN);
     putchar('}');

@@ -60,16 +60,12 @@ void progress_tell_plan(void *ctx, const SeriesPlan *plan)
         return;
     progress_done(progress);
     if (progress->kind == PROGRESS_JSON) {
-        fprintf(stderr, "{\"plan\": true, \"passes\": ");
-        json_number(stderr, plan->passes);
-        fprintf(stderr, ", \"seconds_a_pass\": ");
-        json_number(stderr, plan->seconds);
-        fprintf(stderr, ", \"photons\": ");
-        json_number(stderr, plan->photons);
-        fprintf(stderr, ", \"samples\": ");
-        json_number(stderr, plan->samples);
-        fprintf(stderr, ", \"error\": ");
-        json_number(stderr, plan->error);
+        fprintf(stderr, "{\"plan\": true");
+        json_field(stderr, "passes", plan->passes);
+        json_field(stderr, "seconds_a_pass", plan->seconds);
+        json_field(stderr, "photons", plan->photons);
+        json_field(stderr, "samples", plan->samples);
+        json_field(stderr, "error", plan->error);
         fprintf(stderr, "}\n");
         return;
     }
@@ -135,13 +131,10 @@ static void say_passes_json(const Args *args, const RenderResult *result, double
 {
     fprintf(stderr, "{\"done\": true, \"passes\": %" PRIu64 ", \"passes_of_this_run\": %" PRIu64,
             result->passes, result->new_passes);
-    fprintf(stderr, ", \"seconds\": ");
-    json_number(stderr, seconds);
+    json_field(stderr, "seconds", seconds);
     if (result->error.is_known) {
-        fprintf(stderr, ", \"error\": ");
-        json_number(stderr, result->error.whole);
-        fprintf(stderr, ", \"error_bound\": ");
-        json_number(stderr, result->error.bound);
+        json_field(stderr, "error", result->error.whole);
+        json_field(stderr, "error_bound", result->error.bound);
     }
     fprintf(stderr, ", \"files\": [");
     for (int i = 0; i < args->output_count; i++) {

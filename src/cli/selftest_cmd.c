@@ -26,11 +26,9 @@ static void print_claim_json(ClaimPrinter *printer, const Claim *claim)
                    {"limit", claim_limit(claim)}};
     printf("%s\n  {\"name\": ", printer->count ? "," : "{\"claims\": [");
     json_string(stdout, claim->name);
-    printf(", \"what\": ");
-    json_string(stdout, claim->what);
+    json_text(stdout, "what", claim->what);
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
-        printf(", \"%s\": ", numbers[i].name);
-        json_number(stdout, numbers[i].value);
+        json_field(stdout, numbers[i].name, numbers[i].value);
     }
     printf(", \"in_standard_errors\": %s, \"holds\": %s}",
            claim_has_chance(claim) ? "true" : "false", claim_holds(claim) ? "true" : "false");
@@ -105,8 +103,7 @@ static void print_base(void *ctx, const ChangeBase *base, double size)
     if (printer->is_json) {
         printf("{\"width\": %d, \"height\": %d, \"size\": ", base->width, base->height);
         json_number(stdout, size);
-        printf(", \"seed_rmse\": ");
-        json_number(stdout, base->seed_rmse);
+        json_field(stdout, "seed_rmse", base->seed_rmse);
         printf(", \"moves\": [");
         return;
     }
@@ -151,8 +148,7 @@ static void print_worst_json(const MoveResult *result)
     }
     Place place = span_place(result->worst->span);
     json_string(stdout, result->worst->name);
-    printf(", \"file\": ");
-    json_string(stdout, result->worst->span.source->path);
+    json_text(stdout, "file", result->worst->span.source->path);
     printf(", \"line\": %d}", place.line);
 }
 
@@ -173,8 +169,7 @@ static void print_move_json(const MovePrinter *printer, const MoveResult *result
     printf("%s\n  {\"name\": ", printer->count ? "," : "");
     json_string(stdout, result->name);
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
-        printf(", \"%s\": ", numbers[i].name);
-        json_number(stdout, numbers[i].value);
+        json_field(stdout, numbers[i].name, numbers[i].value);
     }
     print_worst_json(result);
     printf(", \"verdict\": \"%s\", \"holds\": %s}", verdicts[change_kind(change)],

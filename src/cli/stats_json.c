@@ -34,10 +34,8 @@ static void print_book(FILE *file, const LightBooks *book)
 {
     fputs("\n      {\"light\": ", file);
     json_string(file, book->name);
-    fputs(", \"power\": ", file);
-    json_number(file, book->power);
-    fputs(", \"share\": ", file);
-    json_number(file, book->share);
+    json_field(file, "power", book->power);
+    json_field(file, "share", book->share);
     fprintf(file,
             ", \"emitted\": %" PRIu64 ", \"stored_paths\": %" PRIu64 ", \"absorbed\": %" PRIu64
             ", \"escaped\": %" PRIu64 ", \"cut\": %" PRIu64 ", \"stored\": %" PRIu64,
@@ -112,14 +110,12 @@ static void print_error(FILE *file, const ErrorFigure *error)
 {
     if (!error->is_known)
         return;
-    fputs("  \"error\": {\"percentile\": 95, \"relative\": ", file);
-    json_number(file, error->whole);
-    fputs(", \"confidence\": 90, \"bound\": ", file);
-    json_number(file, error->bound);
-    fputs(", \"noise\": ", file);
-    json_number(file, error->noise);
-    fputs(", \"bias\": ", file);
-    json_number(file, error->bias);
+    fputs("  \"error\": {\"percentile\": 95", file);
+    json_field(file, "relative", error->whole);
+    fputs(", \"confidence\": 90", file);
+    json_field(file, "bound", error->bound);
+    json_field(file, "noise", error->noise);
+    json_field(file, "bias", error->bias);
     fputs("},\n", file);
 }
 

@@ -91,8 +91,7 @@ static void print_json(const SideRun *pms, const SideRun *povray, const CompareR
     printf("{");
     metrics_print_json(stdout, result);
     for (size_t i = 0; i < sizeof items / sizeof *items; i++) {
-        printf(", \"%s\": ", items[i].name);
-        json_number(stdout, items[i].value);
+        json_field(stdout, items[i].name, items[i].value);
     }
     printf("}\n");
 }

@@ -118,8 +118,7 @@ void metrics_print_json(FILE *file, const CompareResult *r)
                  {"relmse_epsilon", COMPARE_REL_EPSILON}};
     fprintf(file, "\"space\": \"%s\"", r->is_display ? "display" : "linear");
     for (size_t i = 0; i < sizeof items / sizeof *items; i++) {
-        fprintf(file, ", \"%s\": ", items[i].name);
-        json_number(file, items[i].value);
+        json_field(file, items[i].name, items[i].value);
     }
 }
 

@@ -201,12 +201,6 @@ static Status make_sketches(const Tracer *tracer, const RenderOptions *options, 
     return OK;
 }
 
-static void ignore(void *ctx, const char *text)
-{
-    (void)ctx;
-    (void)text;
-}
-
 Status forecast_make(const Tracer *tracer, const RenderOptions *options, Diag *diag, Forecast *out)
 {
     Sketch sketches[2] = {0};
@@ -215,7 +209,7 @@ Status forecast_make(const Tracer *tracer, const RenderOptions *options, Diag *d
     PhotonOptions photons = pass_photon_options(options, options->seed);
     photons.progress = NULL;
     TRY(photon_plan_budgets(tracer, &photons, diag, &out->books));
-    diag_init(&quiet, ignore, NULL);
+    diag_init(&quiet, diag_drop, NULL);
     Status status = make_sketches(tracer, options, &quiet, &out->books, sketches);
     diag_done(&quiet);
     if (status == OK) {

@@ -132,18 +132,6 @@ void report_print_csv(FILE *file, const Study *study)
 
 /* --- JSON ----------------------------------------------------------------------------------- */
 
-static void json_field(FILE *file, const char *name, double number)
-{
-    fprintf(file, ", \"%s\": ", name);
-    json_number(file, number);
-}
-
-static void json_text(FILE *file, const char *name, const char *text)
-{
-    fprintf(file, ", \"%s\": ", name);
-    json_string(file, text);
-}
-
 static void json_row(FILE *file, const StudyRow *row)
 {
     fprintf(file, "    {\"setting\": \"%s\"", name_of(row->point));
