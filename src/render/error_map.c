@@ -202,6 +202,7 @@ static void film_luminances(const Film *film, float *out)
 typedef struct Sampling {
     int samples;
     bool is_spread;
+    double divisor; /* of the spread of samples */
 } Sampling;
 
 /* Square of the error that the samples of a pixel leave. */
@@ -214,14 +215,14 @@ static double sampling_error2(const float *values, const float *clues, Sampling 
     if (sampling.is_spread)
         return (double)clues[CLUE_LENS] / sampling.samples;
     if (sampling.samples > 1 && spread > SAME_SAMPLES * square)
-        return spread / pow(sampling.samples, SPREAD_POWER);
+        return spread / sampling.divisor;
     return BEND_PART * bend2(values, x, y, map->width, map->height);
 }
 
 void error_map_of_film(const Film *film, int samples, bool is_spread, const SceneSettings *settings,
                        ErrorMap *map)
 {
-    const Sampling sampling = {samples, is_spread};
+    const Sampling sampling = {samples, is_spread, pow(samples, SPREAD_POWER)};
     const float *clues = film->image.layers[film->image.layer_count - 1].pixels;
     float *values = map->scratch;
     film_luminances(film, values);

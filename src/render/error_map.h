@@ -27,10 +27,10 @@ typedef struct ErrorMap {
     int width, height;
     float *value;     /* of the picture */
     float *luminance; /* the same, averaged over neighbours */
-    float *noise;  /* an error as chance may make it, of either sign */
-    float *smooth; /* standard error, from the noise of the pixels around */
-    float *caustic; /* as smooth, of the light of the caustic map alone; 0 of a single pass */
-    float *bias;    /* magnitude */
+    float *noise;     /* an error as chance may make it, of either sign */
+    float *smooth;    /* standard error, from the noise of the pixels around */
+    float *caustic;   /* as smooth, of the light of the caustic map alone; 0 of a single pass */
+    float *bias;      /* magnitude */
     float *scratch, *spare; /* to work with */
 } ErrorMap;
 

@@ -8,9 +8,9 @@
 #include <stdbool.h>
 
 typedef struct Pace {
-    double seconds; /* for the whole render; 0: no limit */
-    double started; /* of the render, by clock_wall */
-    double ending;  /* seconds that writing the picture takes */
+    double seconds;        /* for the whole render; 0: no limit */
+    double started;        /* of the render, by clock_wall */
+    double ending;         /* seconds that writing the picture takes */
     double photon_seconds; /* of all photons of a pass; 0: not known yet */
     double sample_seconds; /* of one sample of the eye; 0: not known yet */
     double photon_part;    /* of the photons asked for, in each pass */

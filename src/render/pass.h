@@ -5,14 +5,15 @@
 
 #include "render/film.h"
 
-/* What makes a pass one of many: photons are gathered within a radius that the pass is given, all
- * of them, so that the estimate is that of a fixed kernel and the mean over passes is right. */
+/* What makes a pass one of many: photons are gathered within a part of the radius that fits their
+ * density at the point (or of the one asked for), all of them, and the part goes to zero: so the
+ * mean over passes is right. */
 typedef struct PassSeries {
-    double shrink;         /* gather radius over that of the first pass */
-    double photon_part;    /* of the photons the scene asks for */
-    bool is_repeat;        /* a pass has been run before: what there is to warn of was said */
-    PassRadii *first;      /* gather radii of the first pass; those that are 0 are found, from the
-                              density of the photons, and set */
+    double shrink;      /* gather radius over that of the first pass */
+    double photon_part; /* of the photons the scene asks for */
+    bool is_repeat;     /* a pass has been run before: what there is to warn of was said */
+    PassRadii *first;   /* gather radii of the first pass where its map is of common density; those
+                           that are 0 are found and set */
 } PassSeries;
 
 typedef struct PassOptions {

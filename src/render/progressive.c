@@ -16,14 +16,12 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "render/progressive.h"
 
+#include "base/mem.h"
 #include "base/rng.h"
 #include "base/work.h"
-#include "base/mem.h"
 #include "render/checkpoint.h"
 #include "render/pace.h"
 #include "render/pass.h"
-
-#include <string.h>
 
 /* Names the seeds of the photons of passes, and of the samples of halves. */
 enum { SERIES_RNG = 0x736572, HALF_RNG = 0x68616c };

@@ -17,16 +17,20 @@
 /* Noise aims below what is wanted: the bound is above the figure. */
 #define AIM 0.72
 
-/* Rounds of bisection for the level. */
-enum { LEVEL_ROUNDS = 40 };
+/* Rounds of bisection for the logarithm of the level. */
+enum { LEVEL_ROUNDS = 20 };
 
 Status steering_init(Steering *steering, const Film *film, float rate, uint64_t until, Diag *diag)
 {
     size_t pixels = (size_t)film->width * (size_t)film->height;
     *steering = (Steering){.pixels = pixels, .until = until};
     steering->rate = mem_array(pixels, sizeof *steering->rate);
-    if (!steering->rate)
+    steering->excess = mem_array(pixels, sizeof *steering->excess);
+    steering->most = mem_array(pixels, sizeof *steering->most);
+    if (!steering->rate || !steering->excess || !steering->most) {
+        steering_done(steering);
         return diag_no_memory(diag, "the samples of pixels");
+    }
     steering_even(steering, rate);
     return OK;
 }
@@ -40,42 +44,61 @@ void steering_even(Steering *steering, float rate)
 void steering_done(Steering *steering)
 {
     mem_free(steering->rate);
+    mem_free(steering->excess);
+    mem_free(steering->most);
     *steering = (Steering){0};
 }
 
 /* --- the plan ------------------------------------------------------------------------------- */
 
 typedef struct Planning {
+    Steering *steering;
     const ErrorMap *map;
     const FilmSum *halves;
-    double mean;        /* luminance of the picture */
-    double photon_work; /* see SteeringGoal */
+    double photon_work; /* of a pass, in samples of every pixel */
     double passes;      /* to come */
 } Planning;
+
+static double taken(const Planning *p, size_t i)
+{
+    return (double)p->halves[0].good[i] + (double)p->halves[1].good[i];
+}
+
+/* The samples of a pixel in a pass that still help.  They share its photons: with n of them its
+ * error squared is the photons' part and the n-th of the rest, and its work that of the photons and
+ * n; this n makes the most of it. */
+static double rate_most(const Planning *p, size_t i)
+{
+    double error = (double)p->map->smooth[i], caustic = (double)p->map->caustic[i];
+    double part = error > 0 ? caustic * caustic / (error * error) : 0;
+    part = fmin(1, fmax(part, p->photon_work > 0 ? HIDDEN_PHOTON_PART : 0));
+    double most = part > 0 ? fmax(1, sqrt((1 - part) / part * p->photon_work)) : INFINITY;
+    return fmin(most, STEERING_RATE_MOST);
+}
+
+/* Find what of a pixel's rate does not depend on the level. */
+static void weigh_pixels(const Planning *p)
+{
+    double mean = error_map_mean(p->map);
+    for (size_t i = 0; i < p->steering->pixels; i++) {
+        double relative = error_map_around(p->map, i, mean);
+        p->steering->excess[i] = (float)(taken(p, i) * relative * relative);
+        p->steering->most[i] = (float)rate_most(p, i);
+    }
+}
 
 /* Return the samples a pass that bring a pixel's relative standard error down to `level` in the
  * passes to come. */
 static double rate_for(const Planning *p, size_t i, double level)
 {
-    const ErrorMap *map = p->map;
-    double error = (double)map->smooth[i], caustic = (double)map->caustic[i];
-    double relative = error_map_around(map, i, p->mean);
-    double taken = (double)p->halves[0].good[i] + (double)p->halves[1].good[i];
-    double wanted = taken * (relative * relative / (level * level) - 1) / p->passes;
-    double photon_part = error > 0 ? caustic * caustic / (error * error) : 0;
-    photon_part = fmin(1, fmax(photon_part, p->photon_work > 0 ? HIDDEN_PHOTON_PART : 0));
-    /* Samples of a pass share its photons: with n of them its error squared is the photons' part
-     * and the n-th of the rest, and its work that of the photons and n; this n makes the most of
-     * it. */
-    double most = photon_part > 0 ? fmax(1, sqrt((1 - photon_part) / photon_part * p->photon_work))
-                                  : STEERING_RATE_MOST;
-    return fmin(fmax(wanted, RATE_LEAST), fmin(most, STEERING_RATE_MOST));
+    double wanted = ((double)p->steering->excess[i] / (level * level) - taken(p, i)) / p->passes;
+    return fmin(fmax(wanted, RATE_LEAST), (double)p->steering->most[i]);
 }
 
-static double samples_for(const Planning *p, size_t pixels, double level)
+static double samples_for(const Planning *p, double level)
 {
     double sum = 0;
-    for (size_t i = 0; i < pixels; i++)
+    for (size_t i = 0; i < p->steering->pixels; i++)
         sum += rate_for(p, i, level);
     return sum;
 }
@@ -90,13 +113,13 @@ static double affordable_rate(const Planning *p)
 }
 
 /* Return the level that takes as many samples a pass. */
-static double affordable_level(const Planning *p, size_t pixels, double now)
+static double affordable_level(const Planning *p, double now)
 {
-    double affordable = (double)pixels * affordable_rate(p);
+    double affordable = (double)p->steering->pixels * affordable_rate(p);
     double low = now / 1024, high = now;
     for (int i = 0; i < LEVEL_ROUNDS; i++) {
         double level = sqrt(low * high);
-        if (samples_for(p, pixels, level) > affordable)
+        if (samples_for(p, level) > affordable)
             low = level;
         else
             high = level;
@@ -129,15 +152,16 @@ void steering_plan(Steering *steering, const ErrorMap *map, const FilmSum halves
                    const ErrorFigure *figure, uint64_t passes, const SteeringGoal *goal)
 {
     uint64_t ahead = passes_ahead(figure, passes, goal);
-    Planning p = {.map = map,
+    Planning p = {.steering = steering,
+                  .map = map,
                   .halves = halves,
-                  .mean = error_map_mean(map),
                   .photon_work = goal->photon_work / (double)steering->pixels,
                   .passes = (double)ahead};
     steering->until = passes + ahead;
-    if (!(figure->noise > 0) || !(p.mean > 0))
+    if (!(figure->noise > 0))
         return;
-    double level = affordable_level(&p, steering->pixels, figure->noise);
+    weigh_pixels(&p);
+    double level = affordable_level(&p, figure->noise);
     if (goal->error > 0)
         level = fmax(level, level_wanted(figure, goal));
     for (size_t i = 0; i < steering->pixels; i++)

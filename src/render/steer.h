@@ -19,6 +19,8 @@ enum { STEERING_RATE_MOST = 16 };
 typedef struct Steering {
     size_t pixels;
     float *rate;    /* samples of each pixel in a pass, in the mean over passes */
+    float *excess;  /* to plan with: samples so far times the square of the relative error */
+    float *most;    /* the same: samples of a pass that still help */
     uint64_t until; /* passes in all when the next plan is due */
 } Steering;
 
