@@ -111,8 +111,9 @@ bench-built: $(B)/pms $(BENCH)
 
 bench-accuracy: deps ## estimated errors against true ones, for every scene (an hour)
 	$(Q)$(MAKE) --no-print-directory $(B)/tests/bench/accuracy_bench
-	$(Q)$(B)/tests/bench/accuracy_bench scenes/*.pms
-	$(Q)$(B)/tests/bench/accuracy_bench -e 2 -n 5 -r 60 $(QUICK:%=scenes/%.pms)
+	$(Q)mkdir -p $(B)/truth
+	$(Q)$(B)/tests/bench/accuracy_bench -k $(B)/truth scenes/*.pms
+	$(Q)$(B)/tests/bench/accuracy_bench -k $(B)/truth -e 2 -n 5 $(QUICK:%=scenes/%.pms)
 
 fuzz: deps ## fuzz the scene reader for a minute (needs clang with libFuzzer)
 	$(Q)tests/fuzz/run.sh

@@ -1,11 +1,12 @@
 /* Estimated errors against true ones: of pictures of one pass and of several, with a quarter, all
  * and four times the photons; and of renders that are asked for an error.
  *
- * accuracy_bench [-r SECONDS] [-e PERCENT] [-n SEEDS] SCENE...
+ * accuracy_bench [-r SECONDS] [-e PERCENT] [-n SEEDS] [-k FOLDER] SCENE...
  *
  * The truth is a long progressive render of the scene with random numbers of its own, of SECONDS.
  * What that is wrong itself, by its own estimate, is taken off the square of the difference; where
- * it is more than half of the difference, the case tells nothing and is not counted.
+ * it is more than half of the difference, the case tells nothing and is not counted.  With -k it is
+ * kept in a folder and taken from there the next time.
  * SPDX-License-Identifier: Apache-2.0 */
 #include "base/mem.h"
 #include "base/work.h"
@@ -31,6 +32,7 @@ typedef struct Case {
 typedef struct Bench {
     double seconds, error; /* of the reference; wanted, 0: none */
     int seeds;
+    const char *folder; /* of kept references; NULL: none */
     Diag diag;
     Case cases[CASES_MAX];
     int count;
@@ -82,6 +84,37 @@ static void make_truth(Bench *bench, const Scene *scene, Truth *out)
     colours_of(&result, out->colours);
     out->error = result.error.whole;
     render_result_done(&result);
+}
+
+/* The file of a scene's reference: its path with a '-' for every '/'. */
+static bool truth_file(const Bench *bench, const char *scene, char out[static 512])
+{
+    if (!bench->folder)
+        return false;
+    int start = snprintf(out, 512, "%s/", bench->folder);
+    snprintf(out + start, 512 - (size_t)start, "%s.%gs", scene, bench->seconds);
+    for (char *c = out + start; *c; c++)
+        if (*c == '/')
+            *c = '-';
+    return true;
+}
+
+static void find_truth(Bench *bench, const Scene *scene, Truth *out)
+{
+    char path[512];
+    bool is_kept = truth_file(bench, scene->path, path);
+    FILE *file = is_kept ? fopen(path, "rb") : NULL;
+    bool is_read = file && fread(out, sizeof *out, 1, file) == 1;
+    if (file)
+        fclose(file);
+    if (is_read)
+        return;
+    make_truth(bench, scene, out);
+    file = is_kept ? fopen(path, "wb") : NULL;
+    if (is_kept && (!file || fwrite(out, sizeof *out, 1, file) != 1))
+        fprintf(stderr, "cannot keep %s\n", path);
+    if (file)
+        fclose(file);
 }
 
 /* Render, and print and keep how far estimate and truth are apart. */
@@ -168,7 +201,7 @@ static void try_scene(Bench *bench, const char *path)
     Scene *scene;
     if (sdl_load(&bench->diag, path, &sdl, &scene) != OK)
         exit(2);
-    make_truth(bench, scene, &truth);
+    find_truth(bench, scene, &truth);
     printf("%-28s %-16s %8.3f\n", path, "the reference", 100 * truth.error);
     if (bench->error > 0)
         try_seeds(bench, scene, &truth);
@@ -209,13 +242,15 @@ int main(int argc, char **argv)
 {
     static Bench bench = {.seconds = 60, .seeds = 3};
     int letter;
-    while ((letter = getopt(argc, argv, "r:e:n:")) != -1) {
+    while ((letter = getopt(argc, argv, "r:e:n:k:")) != -1) {
         if (letter == 'r')
             bench.seconds = atof(optarg);
         else if (letter == 'e')
             bench.error = atof(optarg) / 100;
         else if (letter == 'n')
             bench.seeds = atoi(optarg);
+        else if (letter == 'k')
+            bench.folder = optarg;
         else
             return 2;
     }
