@@ -17,24 +17,27 @@ typedef struct Job {
     StudyOptions options;
     ReportLook look;
     Progress progress;
-    char folder[FILE_PATH_MAX];
 } Job;
 
 /* Without -o: the scene's name with .study, in the current folder. */
 static Status choose_folder(Job *job)
 {
-    const Args *args = job->args;
+    Args *args = job->args;
     const char *base = path_base(args->operands[0]), *extension = path_extension(base);
     size_t length = strlen(base) - (*extension ? strlen(extension) + 1 : 0);
-    job->options.folder = job->folder;
     if (args->output_count > 1)
         return diag_fail(args->diag, ERR_USAGE, "a study goes into one folder, got %d with -o",
                          args->output_count);
-    if (args->output_count == 1)
-        snprintf(job->folder, sizeof job->folder, "%s", args->outputs[0]);
-    else
-        snprintf(job->folder, sizeof job->folder, "%.*s.study", (int)length, base);
-    return OK;
+    if (args->output_count == 1) {
+        job->options.folder = args->outputs[0];
+        return OK;
+    }
+    size_t size = length + sizeof ".study";
+    char *folder = arena_alloc(args->arena, size);
+    if (folder)
+        snprintf(folder, size, "%.*s.study", (int)length, base);
+    job->options.folder = folder;
+    return folder ? OK : diag_no_memory(args->diag, "a study");
 }
 
 /* --time bounds the study, not a render of it. */
@@ -59,7 +62,7 @@ static Status read_options(Job *job)
 static Status tell(const Job *job, const Study *study, Status ended)
 {
     const Args *args = job->args;
-    TRY(report_write(study, &job->look));
+    Status written = report_write(study, &job->look);
     if (args_has(args, OPT_JSON))
         report_print_json(stdout, study);
     else
@@ -69,9 +72,9 @@ static Status tell(const Job *job, const Study *study, Status ended)
                          "interrupted; the report in '%s' is of %d runs of %d, the same command "
                          "goes on from there",
                          study->options.folder, study_done_count(study), study_run_count(study));
-    if (job->progress.kind != PROGRESS_NONE)
+    if (written == OK && job->progress.kind != PROGRESS_NONE)
         fprintf(stderr, "pms: the report is '%s/study.html'\n", study->options.folder);
-    return OK;
+    return ended != OK ? ended : written;
 }
 
 static Status study_loaded(Job *job)

@@ -2,8 +2,6 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "study/report_int.h"
 
-#include "base/file.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -208,9 +206,14 @@ static void put_panels(const Page *page)
 
 static Status put_card(const Page *page, const StudyRow *row)
 {
-    fputs("<div class=\"card\">", page->file);
-    TRY(thumbnail_print(page->file, page->study, row->point, page->look, row->point->how));
-    TRY(thumbnail_print_error(page->file, page->study, row->point, "visible error"));
+    bool has_picture = file_exists(study_picture_path(page->study, row->point).text);
+    fputs(has_picture ? "<div class=\"card\">"
+                      : "<div class=\"card\">(its picture was removed)<br>",
+          page->file);
+    if (has_picture) {
+        TRY(thumbnail_print(page->file, page->study, row->point, page->look, row->point->how));
+        TRY(thumbnail_print_error(page->file, page->study, row->point, "visible error"));
+    }
     put_time(page, "<b>", row->seconds, "</b>");
     put_percent(page, " &nbsp; ", row->error, "<br>");
     put_how(page, row->point->how);
@@ -342,30 +345,58 @@ static void put_reference(const Page *page)
     fprintf(page->file, "FLIP has that noise in it: %.3f.</p>\n", truth->noise.flip);
 }
 
+static void put_point(const Page *page, const char *before, const StudyPoint *point)
+{
+    put(page, before, report_name(point), " ");
+    put(page, "", point->label, point->is_fine ? " with 16 samples" : "");
+}
+
+/* The values that there was no time for at all. */
+static void put_unseen(const Page *page)
+{
+    const Study *study = page->study;
+    const char *before = "Not seen at all: ";
+    for (int i = 0; i < study->count; i++) {
+        if (study->runs[STUDY_SEEDS * i].is_done || study->refusals[i])
+            continue;
+        put_point(page, before, &study->points[i]);
+        before = "; ";
+    }
+    fputs(*before == ';' ? "." : "", page->file);
+}
+
+/* The values that cannot be rendered. */
+static void put_refused(const Page *page)
+{
+    const Study *study = page->study;
+    const char *head = "<table><tr><th>cannot be rendered</th><th>why</th></tr>\n", *end = "";
+    for (int i = 0; i < study->count; i++) {
+        if (!study->refusals[i])
+            continue;
+        fputs(head, page->file);
+        put_point(page, "<tr><td>", &study->points[i]);
+        put(page, "</td><td>", study->refusals[i], "</td></tr>\n");
+        head = "";
+        end = "</table>\n";
+    }
+    fputs(end, page->file);
+}
+
 static void put_left_out(const Page *page)
 {
     const Study *study = page->study;
-    int runs = study_run_count(study), done = study_done_count(study);
-    const char *comma = "";
+    int runs = study_run_count(study), left = study_left_count(study);
     fputs("<h2>What was left out</h2>\n<p>", page->file);
-    if (done == runs)
+    if (study_done_count(study) == runs)
         fputs("Nothing: every value was rendered with three seeds.", page->file);
-    else
+    if (left > 0)
         fprintf(page->file,
                 "%d of %d renders were not made: the time was over. The same command with "
                 "more <code>--time</code> goes on. ",
-                runs - done, runs);
-    if (study_missing_points(study) > 0)
-        fputs("Not seen at all: ", page->file);
-    for (int i = 0; i < study->count; i++) {
-        const StudyPoint *point = &study->points[i];
-        if (study->runs[STUDY_SEEDS * i].is_done)
-            continue;
-        put(page, comma, setting_name((SettingId)point->setting), " ");
-        put(page, "", point->label, point->is_fine ? " with 16 samples" : "");
-        comma = "; ";
-    }
-    fputs(*comma ? ".</p>\n" : "</p>\n", page->file);
+                left, runs);
+    put_unseen(page);
+    fputs("</p>\n", page->file);
+    put_refused(page);
 }
 
 static void put_all_row(const Page *page, const StudyRow *row)
@@ -424,19 +455,19 @@ static Status put_page(const Page *page)
 
 Status page_write(const Study *study, const ReportLook *look)
 {
-    char path[FILE_PATH_MAX], *text = NULL;
+    StudyPath path = study_path(study, "study.html");
+    char *text = NULL;
     size_t size = 0;
     Page page = {.study = study, .look = look};
-    snprintf(path, sizeof path, "%s/study.html", study->options.folder);
     TRY(plots_make(study, study->arena, &page.plots));
     page.file = open_memstream(&text, &size);
     if (!page.file)
-        return diag_no_memory(study->diag, path);
+        return diag_no_memory(study->diag, path.text);
     Status status = put_page(&page);
     if (fclose(page.file) != 0 && status == OK)
-        status = diag_no_memory(study->diag, path);
+        status = diag_no_memory(study->diag, path.text);
     if (status == OK)
-        status = file_write(study->diag, path, text, size);
+        status = file_write(study->diag, path.text, text, size);
     free(text);
     return status;
 }

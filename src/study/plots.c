@@ -374,42 +374,37 @@ static Status run_gnuplot(const Study *study, const char *log, bool *is_good)
 /* Read a drawing, from its <svg> on; NULL if there is none. */
 static Status read_svg(const Study *study, Arena *arena, const char *name, const char **out)
 {
-    char path[FILE_PATH_MAX];
+    StudyPath path = study_path(study, name);
     const char *text;
     size_t size;
     *out = NULL;
-    snprintf(path, sizeof path, "%s/%s.svg", study->options.folder, name);
-    if (!file_exists(path))
+    if (!file_exists(path.text))
         return OK;
-    TRY(file_read(study->diag, path, SVG_BYTES_MAX, arena, &text, &size));
+    TRY(file_read(study->diag, path.text, SVG_BYTES_MAX, arena, &text, &size));
     *out = strstr(text, "<svg");
     return OK;
 }
 
 static void remove_file(const Study *study, const char *name)
 {
-    char path[FILE_PATH_MAX];
-    snprintf(path, sizeof path, "%s/%s", study->options.folder, name);
-    unlink(path);
+    unlink(study_path(study, name).text);
 }
 
 Status plots_make(const Study *study, Arena *arena, Plots *out)
 {
-    char script[FILE_PATH_MAX], log[FILE_PATH_MAX];
+    StudyPath script = study_path(study, SCRIPT_NAME), log = study_path(study, "gnuplot.log");
     bool is_good = false;
     *out = (Plots){0};
-    snprintf(script, sizeof script, "%s/" SCRIPT_NAME, study->options.folder);
-    snprintf(log, sizeof log, "%s/gnuplot.log", study->options.folder);
     remove_file(study, "study.svg");
-    Status status = write_script(study, script);
+    Status status = write_script(study, script.text);
     if (status == OK)
-        status = run_gnuplot(study, log, &is_good);
+        status = run_gnuplot(study, log.text, &is_good);
     if (status == OK && is_good)
-        status = read_svg(study, arena, "study", &out->main);
+        status = read_svg(study, arena, "study.svg", &out->main);
     if (status == OK && is_good)
-        status = read_svg(study, arena, "settings", &out->settings);
+        status = read_svg(study, arena, "settings.svg", &out->settings);
     if (status == OK && is_good)
-        status = read_svg(study, arena, "estimate", &out->estimate);
+        status = read_svg(study, arena, "estimate.svg", &out->estimate);
     remove_file(study, "settings.svg");
     remove_file(study, "estimate.svg");
     remove_file(study, "gnuplot.log");

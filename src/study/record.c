@@ -8,6 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Seeds of a point are numbered from 0 up to this at most. */
+enum { SEED_MOST = 1000 };
+
 enum { RECORD_BYTES_MAX = 64 << 20, COLUMN_KEYS = 4, COLUMNS = COLUMN_KEYS + PHASE_COUNT + 8 };
 
 static void print_heading(FILE *file)
@@ -75,17 +78,53 @@ static bool find_setting(const char *text, size_t length, int *out)
     return false;
 }
 
-/* Read the numbers after the first column; returns how many there were. */
+/* Read a field: a finite number, or NaN for an empty one. */
+static bool read_field(const char *text, size_t length, double *out)
+{
+    char *end;
+    *out = NAN;
+    if (length == 0)
+        return true;
+    if (strspn(text, "0123456789+-.e") < length) /* strtod takes blanks, words and hexadecimals */
+        return false;
+    *out = strtod(text, &end);
+    return end == text + length && isfinite(*out);
+}
+
+/* Read the numbers after the first column; returns how many there were, -1: not all are. */
 static int read_numbers(const char *text, double out[COLUMNS])
 {
     int count = 0;
     while (*text == ',' && count < COLUMNS) {
-        char *end;
-        double number = strtod(++text, &end);
-        out[count++] = end == text ? NAN : number;
-        text = end;
+        size_t length = strcspn(++text, ",\n");
+        if (!read_field(text, length, &out[count++]))
+            return -1;
+        text += length;
     }
     return *text == '\n' ? count : -1;
+}
+
+static bool read_key(const double numbers[3], RunKey *key)
+{
+    double value = numbers[0], fine = numbers[1], seed = numbers[2];
+    if (isnan(value) || !(fine == 0 || fine == 1) ||
+        !(seed >= 0 && seed <= SEED_MOST && seed == floor(seed)))
+        return false;
+    key->value = value;
+    key->is_fine = fine > 0;
+    key->seed = (int)seed;
+    return true;
+}
+
+/* Return true if a run can have been measured so: seconds are known, and only squares are below 0,
+ * if the noise of the reference is taken off them. */
+static bool has_sense(const StudyRun *run)
+{
+    bool has_seconds = run->seconds >= 0;
+    for (int i = 0; i < PHASE_COUNT; i++)
+        has_seconds = has_seconds && run->phase[i] >= 0;
+    return has_seconds && !(run->error.percentile < 0) && !(run->error.flip < 0) &&
+           !(run->estimate < 0) && !(run->bound < 0) && !(run->radius < 0);
 }
 
 static bool read_run(const char *line, RunKey *key, StudyRun *run)
@@ -93,12 +132,9 @@ static bool read_run(const char *line, RunKey *key, StudyRun *run)
     double numbers[COLUMNS];
     size_t length = strcspn(line, ",\n");
     if (!find_setting(line, length, &key->setting) ||
-        read_numbers(line + length, numbers) != COLUMNS - 1)
+        read_numbers(line + length, numbers) != COLUMNS - 1 || !read_key(numbers, key))
         return false;
-    const double *at = numbers;
-    key->value = *at++;
-    key->is_fine = *at++ > 0;
-    key->seed = (int)*at++;
+    const double *at = numbers + COLUMN_KEYS - 1;
     *run = (StudyRun){.is_done = true, .seconds = *at++};
     for (int i = 0; i < PHASE_COUNT; i++)
         run->phase[i] = *at++;
@@ -106,7 +142,7 @@ static bool read_run(const char *line, RunKey *key, StudyRun *run)
     run->estimate = at[4];
     run->bound = at[5];
     run->radius = isnan(at[6]) ? 0 : at[6];
-    return true;
+    return has_sense(run);
 }
 
 Status record_read(Diag *diag, const char *path, Arena *arena,

@@ -29,7 +29,8 @@ typedef struct RunKey {
 Status record_append(Diag *diag, const char *path, const RunKey *key, const StudyRun *run);
 
 /* Read all whole lines of the file and hand them to `take`.  Lines of settings that this version
- * has not are skipped, so is a last line that was cut short.  No file is no error. */
+ * has not are skipped, so are a last line that was cut short and those with numbers that no run
+ * has.  No file is no error. */
 Status record_read(Diag *diag, const char *path, Arena *arena,
                    void (*take)(void *ctx, const RunKey *key, const StudyRun *run), void *ctx);
 

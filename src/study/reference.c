@@ -70,6 +70,18 @@ void reference_forget_states(const char *folder)
     }
 }
 
+/* Let go of effects forced on that this way to render cannot have: they are other ways to the same
+ * light. */
+static Status free_effects(const Scene *scene, PlanOptions *options)
+{
+    Plan plan;
+    TRY(plan_make(scene, options, scene->arena, &plan));
+    for (int i = 0; i < FEATURE_COUNT; i++)
+        if (plan.rows[i].forced == TRI_ON && !plan.rows[i].is_on)
+            options->effects[i] = TRI_UNSET;
+    return OK;
+}
+
 /* Let a half grow, by passes for some seconds or (0) up to a number of them. */
 static Status grow_half(Builder *b, int half, double seconds, uint64_t passes)
 {
@@ -82,6 +94,8 @@ static Status grow_half(Builder *b, int half, double seconds, uint64_t passes)
     render.samples = 1;
     render.plan.is_progressive = true;
     render.plan.integrator = b->options->is_path ? INTEGRATOR_PATH : INTEGRATOR_PHOTONS;
+    if (free_effects(&b->scene, &render.plan) != OK)
+        return diag_no_memory(b->diag, "the reference");
     render.progressive = (ProgressiveOptions){
         .passes = passes, .seconds = seconds, .state_path = path, .is_resumed = file_exists(path)};
     Status status = render_scene(&b->scene, &render, b->diag, &result);

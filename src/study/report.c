@@ -1,7 +1,6 @@
 /* The report of a study: its files.  SPDX-License-Identifier: Apache-2.0 */
 #include "study/report.h"
 
-#include "base/file.h"
 #include "study/report_int.h"
 
 #include <stdlib.h>
@@ -10,15 +9,15 @@
 static Status write_printed(const Study *study, const char *name,
                             void (*print)(FILE *file, const Study *study))
 {
-    char path[FILE_PATH_MAX], *text = NULL;
+    StudyPath path = study_path(study, name);
+    char *text = NULL;
     size_t size = 0;
-    snprintf(path, sizeof path, "%s/%s", study->options.folder, name);
     FILE *file = open_memstream(&text, &size);
     if (!file)
-        return diag_no_memory(study->diag, path);
+        return diag_no_memory(study->diag, path.text);
     print(file, study);
-    Status status = fclose(file) == 0 ? file_write(study->diag, path, text, size)
-                                      : diag_no_memory(study->diag, path);
+    Status status = fclose(file) == 0 ? file_write(study->diag, path.text, text, size)
+                                      : diag_no_memory(study->diag, path.text);
     free(text);
     return status;
 }

@@ -23,6 +23,9 @@ void report_print_json(FILE *file, const Study *study);
 /* Print what matters most, for people. */
 void report_print_text(FILE *file, const Study *study);
 
+/* Return the name of a point's setting; "own": there is none. */
+const char *report_name(const StudyPoint *point);
+
 /* Write an error as percent: "6.7 %", or that it is below what the reference can tell. */
 void report_percent(double error, char out[32]);
 

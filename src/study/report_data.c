@@ -7,7 +7,12 @@
 #include <math.h>
 #include <string.h>
 
-/* --- numbers for people --------------------------------------------------------------------- */
+/* --- names and numbers for people ----------------------------------------------------------- */
+
+const char *report_name(const StudyPoint *point)
+{
+    return point->setting == SETTING_OWN ? "own" : setting_name((SettingId)point->setting);
+}
 
 void report_percent(double error, char out[32])
 {
@@ -79,11 +84,6 @@ void report_basis(const Study *study, const StudyAdvice *advice, char out[160])
 
 /* --- CSV ------------------------------------------------------------------------------------ */
 
-static const char *name_of(const StudyPoint *point)
-{
-    return point->setting == SETTING_OWN ? "own" : setting_name((SettingId)point->setting);
-}
-
 static void csv_number(FILE *file, double number)
 {
     if (isfinite(number))
@@ -103,7 +103,7 @@ static void csv_text(FILE *file, const char *text)
 
 static void csv_row(FILE *file, const StudyRow *row)
 {
-    fprintf(file, "%s,%.9g,%d", name_of(row->point), row->point->value, row->point->is_fine);
+    fprintf(file, "%s,%.9g,%d", report_name(row->point), row->point->value, row->point->is_fine);
     csv_text(file, row->point->label);
     csv_text(file, row->point->how);
     fprintf(file, ",%d", row->seeds);
@@ -134,7 +134,7 @@ void report_print_csv(FILE *file, const Study *study)
 
 static void json_row(FILE *file, const StudyRow *row)
 {
-    fprintf(file, "    {\"setting\": \"%s\"", name_of(row->point));
+    fprintf(file, "    {\"setting\": \"%s\"", report_name(row->point));
     json_field(file, "value", row->point->value);
     json_text(file, "label", row->point->label);
     json_text(file, "how", row->point->how);
@@ -225,11 +225,13 @@ static void json_left_out(FILE *file, const Study *study)
     const char *comma = "";
     fputs("  \"left_out\": [", file);
     for (int i = 0; i < study->count; i++) {
-        if (study->runs[STUDY_SEEDS * i].is_done)
+        if (study->runs[STUDY_SEEDS * i].is_done && !study->refusals[i])
             continue;
-        fprintf(file, "%s\n    {\"setting\": \"%s\"", comma, name_of(&study->points[i]));
+        fprintf(file, "%s\n    {\"setting\": \"%s\"", comma, report_name(&study->points[i]));
         json_text(file, "label", study->points[i].label);
         fprintf(file, ", \"fine\": %s", study->points[i].is_fine ? "true" : "false");
+        fprintf(file, ", \"possible\": %s", study->refusals[i] ? "false" : "true");
+        json_text(file, "reason", study->refusals[i] ? study->refusals[i] : "no time");
         fputc('}', file);
         comma = ",";
     }
@@ -295,6 +297,24 @@ static void print_advice(FILE *file, const Study *study)
     }
 }
 
+/* What cannot be rendered, and what there was no time for. */
+static void print_left_out(FILE *file, const Study *study)
+{
+    const char *head = "\nleft out, since it cannot be rendered\n";
+    for (int i = 0; i < study->count; i++) {
+        const StudyPoint *point = &study->points[i];
+        if (!study->refusals[i])
+            continue;
+        fprintf(file, "%s%-16s %8s %12s   %s\n", head, report_name(point),
+                point->is_fine ? "16" : "", point->label, study->refusals[i]);
+        head = "";
+    }
+    int left = study_left_count(study);
+    if (left > 0)
+        fprintf(file, "\n%d of %d runs were left out; the same command with more --time goes on\n",
+                left, study_run_count(study));
+}
+
 void report_print_text(FILE *file, const Study *study)
 {
     const Truth *truth = &study->truth;
@@ -313,8 +333,5 @@ void report_print_text(FILE *file, const Study *study)
     print_trends(file, study);
     print_front(file, study);
     print_advice(file, study);
-    int runs = study_run_count(study), done = study_done_count(study);
-    if (done < runs)
-        fprintf(file, "\n%d of %d runs were left out; the same command with more --time goes on\n",
-                runs - done, runs);
+    print_left_out(file, study);
 }

@@ -60,7 +60,7 @@ double schedule_cost(const Study *study, int point)
 
 static bool is_pending(const Study *study, int run)
 {
-    return !study->runs[run].is_done && !study->is_left[run];
+    return !study->runs[run].is_done && !study->is_left[run] && !study->refusals[run / STUDY_SEEDS];
 }
 
 double schedule_rest(const Study *study)
@@ -71,11 +71,13 @@ double schedule_rest(const Study *study)
     return sum;
 }
 
-/* Return true if no other point of the setting is cheaper, or was rendered already. */
+/* Return true if no other point of the setting that can be rendered is cheaper, or was rendered
+ * already. */
 static bool is_first_of_setting(const Study *study, int point)
 {
     for (int i = 1; i < study->count; i++) {
-        if (!is_like(&study->points[i], &study->points[point]) || i == point)
+        bool is_other = i != point && !study->refusals[i];
+        if (!is_other || !is_like(&study->points[i], &study->points[point]))
             continue;
         double cost = schedule_cost(study, i), own = schedule_cost(study, point);
         if (study->runs[STUDY_SEEDS * i].is_done || cost < own || (cost == own && i < point))

@@ -1,7 +1,6 @@
 /* Running a study: the folder, the reference, the runs.  SPDX-License-Identifier: Apache-2.0 */
 #include "study/study.h"
 
-#include "base/file.h"
 #include "base/hash.h"
 #include "base/mem.h"
 #include "base/work.h"
@@ -30,24 +29,24 @@
 
 enum { TEXT_BYTES_MAX = 1 << 20, REFERENCE_BYTES_MAX = 1 << 30 };
 
-/* A path in the study's folder. */
-typedef struct StudyPath {
-    char text[FILE_PATH_MAX];
-} StudyPath;
+/* Bytes that the longest name in the folder takes, also while it is being written. */
+enum { NAME_BYTES_MAX = 128 };
 
-static StudyPath path_in(const Study *study, const char *name)
+StudyPath study_path(const Study *study, const char *name)
 {
     StudyPath path;
     snprintf(path.text, sizeof path.text, "%s/%s", study->options.folder, name);
     return path;
 }
 
-void study_picture_path(const Study *study, const StudyPoint *point, char *out, size_t size)
+StudyPath study_picture_path(const Study *study, const StudyPoint *point)
 {
+    char picture[NAME_BYTES_MAX];
     const char *name =
         point->setting == SETTING_OWN ? "own" : setting_name((SettingId)point->setting);
-    snprintf(out, size, "%s/pictures/%s_%g%s.exr", study->options.folder, name, point->value,
+    snprintf(picture, sizeof picture, "pictures/%s_%g%s.exr", name, point->value,
              point->is_fine ? "_fine" : "");
+    return study_path(study, picture);
 }
 
 /* --- time and progress ---------------------------------------------------------------------- */
@@ -115,13 +114,26 @@ static Status describe(const Study *study, char text[CHECKPOINT_SETTINGS_MAX])
     return describe_reference(study, text + used, CHECKPOINT_SETTINGS_MAX - used);
 }
 
+static Status check_folder(const Study *study)
+{
+    const char *folder = study->options.folder;
+    size_t length = strlen(folder), most = FILE_PATH_MAX - NAME_BYTES_MAX;
+    if (length <= most)
+        return OK;
+    return diag_fail(study->diag, ERR_FILE,
+                     "the path of the folder '%.60s...' is too long, %zu bytes of at most %zu",
+                     folder, length, most);
+}
+
 /* Make the folder, or see that what is there is of the same picture. */
 static Status open_folder(Study *study)
 {
     const char *folder = study->options.folder, *there;
     char here[CHECKPOINT_SETTINGS_MAX], difference[2 * CHECKPOINT_SETTINGS_MAX];
-    StudyPath settings = path_in(study, "settings.txt"), pictures = path_in(study, "pictures");
+    StudyPath settings = study_path(study, "settings.txt"),
+              pictures = study_path(study, "pictures");
     size_t size;
+    TRY(check_folder(study));
     TRY(describe(study, here));
     if ((mkdir(folder, 0777) != 0 && errno != EEXIST) ||
         (mkdir(pictures.text, 0777) != 0 && errno != EEXIST))
@@ -142,8 +154,8 @@ static Status open_folder(Study *study)
 /* --- one run -------------------------------------------------------------------------------- */
 
 /* Render a point.  The picture is the caller's. */
-static Status render_point(Study *study, const StudyPoint *point, int seed, StudyRun *run,
-                           Image *image)
+static Status render_point(Study *study, const StudyPoint *point, int seed, Diag *diag,
+                           StudyRun *run, Image *image)
 {
     RenderResult result;
     RenderOptions render = point->options;
@@ -153,7 +165,7 @@ static Status render_point(Study *study, const StudyPoint *point, int seed, Stud
              point->setting == SETTING_OWN ? "scene" : setting_name((SettingId)point->setting),
              point->label, seed);
     double started = clock_wall();
-    Status status = render_scene(&point->scene, &render, study->diag, &result);
+    Status status = render_scene(&point->scene, &render, diag, &result);
     *run = (StudyRun){.seconds = clock_wall() - started,
                       .estimate = result.error.is_known ? result.error.whole : NAN,
                       .bound = result.error.is_known ? result.error.bound : NAN};
@@ -169,9 +181,8 @@ static Status render_point(Study *study, const StudyPoint *point, int seed, Stud
 
 static Status keep_picture(const Study *study, const StudyPoint *point, const Image *image)
 {
-    char path[FILE_PATH_MAX];
-    study_picture_path(study, point, path, sizeof path);
-    return exr_write(study->diag, path, image, NULL, (ExrOptions){.is_half = true});
+    return exr_write(study->diag, study_picture_path(study, point).text, image, NULL,
+                     (ExrOptions){.is_half = true});
 }
 
 /* Measure a picture and write down what came of the run. */
@@ -183,9 +194,17 @@ static Status settle_run(Study *study, int number, const StudyPoint *point, cons
     TRY(truth_compare(study->diag, &study->truth, image, &run->error));
     if (seed == 0)
         TRY(keep_picture(study, point, image));
-    TRY(record_append(study->diag, path_in(study, "runs.csv").text, &key, run));
+    TRY(record_append(study->diag, study_path(study, "runs.csv").text, &key, run));
     run->is_done = true;
     return OK;
+}
+
+/* A point that cannot be rendered is left out, and why is kept for the report. */
+static Status refuse_point(Study *study, int point, Status status)
+{
+    const char *reason = aside_reason(&study->aside, status);
+    study->refusals[point] = arena_strndup(study->arena, reason, strlen(reason));
+    return study->refusals[point] ? OK : diag_no_memory(study->diag, "a study");
 }
 
 static Status do_run(Study *study, int number)
@@ -194,8 +213,13 @@ static Status do_run(Study *study, int number)
     const StudyPoint *point = &study->points[number / STUDY_SEEDS];
     StudyRun run;
     study->run_started = clock_wall();
-    TRY(render_point(study, point, number % STUDY_SEEDS, &run, &image));
-    Status status = settle_run(study, number, point, &image, &run);
+    aside_clear(&study->aside);
+    Status status =
+        render_point(study, point, number % STUDY_SEEDS, &study->aside.diag, &run, &image);
+    if (status != OK)
+        return status == ERR_INTERRUPTED ? status
+                                         : refuse_point(study, number / STUDY_SEEDS, status);
+    status = settle_run(study, number, point, &image, &run);
     study->runs[number] = run;
     image_done(&image);
     return status;
@@ -210,7 +234,7 @@ static Status save_reference_facts(const Study *study)
     const Truth *truth = &study->truth;
     int length = snprintf(text, sizeof text, "%s\n%.17g %.17g %.17g\n", truth->method,
                           truth->passes, truth->seconds, truth->rel_blur2);
-    return file_write(study->diag, path_in(study, "reference.txt").text, text, (size_t)length);
+    return file_write(study->diag, study_path(study, "reference.txt").text, text, (size_t)length);
 }
 
 static Status load_reference_facts(Study *study)
@@ -218,14 +242,17 @@ static Status load_reference_facts(Study *study)
     const char *text;
     size_t size;
     Truth *truth = &study->truth;
-    TRY(file_read(study->diag, path_in(study, "reference.txt").text, TEXT_BYTES_MAX, study->arena,
-                  &text, &size));
+    TRY(file_read(study->diag, study_path(study, "reference.txt").text, TEXT_BYTES_MAX,
+                  study->arena, &text, &size));
     int length = (int)strcspn(text, "\n");
     snprintf(truth->method, sizeof truth->method, "%.*s", length, text);
-    if (sscanf(text + length, "%lf %lf %lf", &truth->passes, &truth->seconds, &truth->rel_blur2) !=
-        3)
+    int count = sscanf(text + length, "%lf %lf %lf", &truth->passes, &truth->seconds,
+                       &truth->rel_blur2); /* of which the last may be unknown, a NaN */
+    if (count != 3 || !(truth->passes >= 0 && isfinite(truth->passes)) ||
+        !(truth->seconds >= 0 && isfinite(truth->seconds)) || truth->rel_blur2 < 0 ||
+        isinf(truth->rel_blur2))
         return diag_fail(study->diag, ERR_FILE, "'%s' is damaged: remove the folder '%s'",
-                         path_in(study, "reference.txt").text, study->options.folder);
+                         study_path(study, "reference.txt").text, study->options.folder);
     return OK;
 }
 
@@ -258,7 +285,7 @@ static Status load_reference(Study *study, bool *is_there)
     if (options->reference_path)
         return truth_load_file(study->diag, options->reference_path, width, height, &study->truth);
     TRY(truth_load(study->diag, options->folder, width, height, &study->truth, is_there));
-    if (!*is_there || !file_exists(path_in(study, "reference.txt").text)) {
+    if (!*is_there || !file_exists(study_path(study, "reference.txt").text)) {
         *is_there = false;
         truth_done(&study->truth);
         return OK;
@@ -324,12 +351,25 @@ static Status begin(Study *study, StudyRun *own)
     StudyPoint point;
     setting_point_own(&study->base, &point);
     TRY(load_reference(study, &has_reference));
-    TRY(render_point(study, &point, 0, own, &image));
+    TRY(render_point(study, &point, 0, study->diag, own, &image));
     Status status = has_reference ? OK : build_reference(study, &image);
     if (status == OK)
         status = settle_run(study, 0, &point, &image, own);
     image_done(&image);
     return status;
+}
+
+/* List the points, none of which is done. */
+static Status list_points(Study *study)
+{
+    Status status = setting_grid(&study->base, study->arena, &study->points, &study->count);
+    size_t count = (size_t)study->count;
+    study->runs = ARENA_ARRAY(study->arena, StudyRun, STUDY_SEEDS * count);
+    study->is_left = ARENA_ARRAY(study->arena, bool, STUDY_SEEDS *count);
+    study->refusals = ARENA_ARRAY(study->arena, const char *, count);
+    if (status != OK || !study->runs || !study->is_left || !study->refusals)
+        return diag_no_memory(study->diag, "a study");
+    return OK;
 }
 
 /* Have the reference, the first run and the list of all others. */
@@ -349,11 +389,7 @@ static Status prepare(Study *study, const KeptList *kept)
                          "the reference is missing in '%s': remove that folder to begin anew",
                          study->options.folder);
     study->base.radius = own.radius;
-    Status status = setting_grid(&study->base, study->arena, &study->points, &study->count);
-    study->runs = ARENA_ARRAY(study->arena, StudyRun, (size_t)(STUDY_SEEDS * study->count));
-    study->is_left = ARENA_ARRAY(study->arena, bool, (size_t)(STUDY_SEEDS * study->count));
-    if (status != OK || !study->runs || !study->is_left)
-        return diag_no_memory(study->diag, "a study");
+    TRY(list_points(study));
     study->runs[0] = own;
     place_kept(study, kept);
     return OK;
@@ -362,8 +398,8 @@ static Status prepare(Study *study, const KeptList *kept)
 static Status start(Study *study)
 {
     KeptList kept = {0};
-    Status status =
-        record_read(study->diag, path_in(study, "runs.csv").text, study->arena, take_kept, &kept);
+    Status status = record_read(study->diag, study_path(study, "runs.csv").text, study->arena,
+                                take_kept, &kept);
     if (status == OK && kept.is_short)
         status = diag_no_memory(study->diag, "a study");
     if (status == OK)
@@ -387,7 +423,7 @@ static Status run_all(Study *study)
     return OK;
 }
 
-/* An interruption ends the runs, not the report. */
+/* An interruption ends the runs, not the report; neither does a disk that is full. */
 static Status analyse(Study *study)
 {
     work_interrupted = work_ending = 0;
@@ -401,25 +437,23 @@ Status study_run(const Scene *scene, const StudyOptions *options, Arena *arena, 
                  Study *study)
 {
     *study = (Study){.options = *options, .arena = arena, .diag = diag, .started = clock_wall()};
+    aside_init(&study->aside, diag);
     study->base = (StudyBase){.scene = scene, .options = &study->options.render};
     if (plan_make(scene, &options->render.plan, arena, &study->plan) != OK)
         return diag_no_memory(diag, "the plan");
+    TRY(plan_check(&study->plan, diag));
     study->base.plan = &study->plan;
     study->base.has_path_truth = reference_can_be_path(scene, &options->render, &study->plan);
     TRY(open_folder(study));
-    Status status = start(study);
-    if (status == OK)
-        status = run_all(study);
-    if (study->runs && (status == OK || status == ERR_INTERRUPTED)) {
-        Status analysed = analyse(study);
-        return analysed == OK ? status : analysed;
-    }
-    return status;
+    TRY(start(study));
+    Status status = run_all(study), analysed = analyse(study);
+    return analysed == OK ? status : analysed;
 }
 
 void study_done(Study *study)
 {
     truth_done(&study->truth);
+    aside_done(&study->aside);
 }
 
 int study_run_count(const Study *study)
@@ -432,6 +466,14 @@ int study_done_count(const Study *study)
     int count = 0;
     for (int i = 0; i < study_run_count(study); i++)
         count += study->runs[i].is_done;
+    return count;
+}
+
+int study_left_count(const Study *study)
+{
+    int count = 0;
+    for (int i = 0; i < study_run_count(study); i++)
+        count += !study->runs[i].is_done && !study->refusals[i / STUDY_SEEDS];
     return count;
 }
 

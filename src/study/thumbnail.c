@@ -2,7 +2,6 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "study/report_int.h"
 
-#include "base/file.h"
 #include "base/mem.h"
 #include "image/compare.h"
 #include "image/ocio.h"
@@ -58,13 +57,13 @@ static void print_base64(FILE *file, const unsigned char *bytes, size_t size)
 
 static Status print_png(FILE *file, const Study *study, const Small *small, const char *alt)
 {
-    char path[FILE_PATH_MAX];
+    StudyPath path = study_path(study, "thumbnail.png");
     const char *bytes;
     size_t size;
-    snprintf(path, sizeof path, "%s/thumbnail.png", study->options.folder);
-    TRY(png_write(study->diag, path, small->width, small->height, 3, small->rgb, 8, true, NULL));
-    Status status = file_read(study->diag, path, PNG_BYTES_MAX, study->arena, &bytes, &size);
-    unlink(path);
+    TRY(png_write(study->diag, path.text, small->width, small->height, 3, small->rgb, 8, true,
+                  NULL));
+    Status status = file_read(study->diag, path.text, PNG_BYTES_MAX, study->arena, &bytes, &size);
+    unlink(path.text);
     if (status != OK)
         return status;
     fprintf(file, "<img width=\"%d\" height=\"%d\" alt=\"", small->width, small->height);
@@ -93,18 +92,28 @@ static Status print_small(FILE *file, const Study *study, const float *rgb, cons
     return status;
 }
 
+/* Load a point's picture. */
+static Status load_picture(const Study *study, const StudyPoint *point, Image *image)
+{
+    StudyPath path = study_picture_path(study, point);
+    TRY(image_load(study->diag, path.text, image));
+    if (image->width == study->truth.width && image->height == study->truth.height)
+        return OK;
+    image_done(image);
+    return diag_fail(study->diag, ERR_FILE, "'%s' is damaged: its size is not the study's",
+                     path.text);
+}
+
 /* Load the colours of a point's picture; *out is the caller's. */
 static Status load_colours(const Study *study, const StudyPoint *point, float **out)
 {
-    char path[FILE_PATH_MAX];
     Image image;
-    study_picture_path(study, point, path, sizeof path);
-    TRY(image_load(study->diag, path, &image));
+    TRY(load_picture(study, point, &image));
     *out = mem_array((size_t)image.width * (size_t)image.height, 3 * sizeof **out);
     if (*out)
         truth_colours(&image, *out);
     image_done(&image);
-    return *out ? OK : diag_no_memory(study->diag, path);
+    return *out ? OK : diag_no_memory(study->diag, "a thumbnail");
 }
 
 Status thumbnail_print(FILE *file, const Study *study, const StudyPoint *point,
@@ -135,10 +144,8 @@ static Status reference_image(const Study *study, Image *out)
 Status thumbnail_print_error(FILE *file, const Study *study, const StudyPoint *point,
                              const char *alt)
 {
-    char path[FILE_PATH_MAX];
     Image image, reference, heat = {0};
-    study_picture_path(study, point, path, sizeof path);
-    TRY(image_load(study->diag, path, &image));
+    TRY(load_picture(study, point, &image));
     Status status = reference_image(study, &reference);
     if (status == OK)
         status = image_flip(study->diag, &image, &reference, &heat);

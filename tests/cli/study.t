@@ -1,15 +1,8 @@
 #!/bin/sh
 # pms study: a report early, going on where it stopped, never mixing studies.
 . "$(dirname "$0")/tap.sh"
-cat >"$T/s.pms" <<'S'
-#version 3.7;
-global_settings { assumed_gamma 1 photons { count 2000 gather 5, 25 } }
-camera { location <0,3,-6> look_at <0,0.8,0> angle 40 }
-light_source { <-4,7,3>, 1 }
-plane { y, 0 pigment { rgb .8 } finish { ambient 0 diffuse 0.9 } }
-sphere { <0,1,0>, 1 pigment { rgbt 1 } finish { ambient 0 diffuse 0 }
-  interior { ior 1.5 } photons { target refraction on collect off } }
-S
+. tests/cli/study_scene.sh
+glass_ball 2000 "$T/s.pms"
 cd "$T" || exit 1
 size="-w 24 --height=18"
 # has FILE PATTERN NAME

@@ -7,15 +7,8 @@ if [ -z "$browser" ] || ! command -v gnuplot >/dev/null; then
     plan
     exit 0
 fi
-cat >"$T/s.pms" <<'S'
-#version 3.7;
-global_settings { assumed_gamma 1 photons { count 4000 gather 5, 25 } }
-camera { location <0,3,-6> look_at <0,0.8,0> angle 40 }
-light_source { <-4,7,3>, 1 }
-plane { y, 0 pigment { rgb .8 } finish { ambient 0 diffuse 0.9 } }
-sphere { <0,1,0>, 1 pigment { rgbt 1 } finish { ambient 0 diffuse 0 }
-  interior { ior 1.5 } photons { target refraction on collect off } }
-S
+. tests/cli/study_scene.sh
+glass_ball 4000 "$T/s.pms"
 width=1200 height=5000
 run timeout 100 "$PMS" study "$T/s.pms" -w 48 --height=36 --time=8s -o "$T/study"
 ok "$code" "a study"

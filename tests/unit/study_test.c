@@ -302,6 +302,63 @@ static void lines_cut_short_are_skipped(void **state)
     free(bytes);
 }
 
+/* Put `field` in place of the n-th of the last line. */
+static void spoil(const char *path, const char *bytes, int n, const char *field)
+{
+    char text[4096];
+    const char *at = bytes + strcspn(bytes, "\n") + 1;
+    for (int i = 0; i < n; i++)
+        at += strcspn(at, ",") + 1;
+    snprintf(text, sizeof text, "%.*s%s%s", (int)(at - bytes), bytes, field,
+             at + strcspn(at, ",\n"));
+    spill(path, text, strlen(text));
+}
+
+/* Return whether a run is read from the line whose n-th field is `field`. */
+static bool is_read_with(const char *bytes, int n, const char *field)
+{
+    const char *path = in_folder("spoiled.csv");
+    spoil(path, bytes, n, field);
+    read_back(path);
+    return kept_count == 1;
+}
+
+/* Numbers that no run has are of no run; what was no number when it was measured is. */
+static void runs_that_make_no_sense_are_skipped(void **state)
+{
+    (void)state;
+    enum { VALUE = 1, FINE, SEED, SECONDS, PHASE, MSE = SECONDS + 1 + PHASE_COUNT, RELMSE };
+    enum { PERCENTILE = RELMSE + 1, FLIP, ESTIMATE, BOUND, RADIUS };
+    const char *path = in_folder("sense.csv");
+    RunKey key = {SETTING_PHOTONS, 4000, false, 1};
+    StudyRun run = {.is_done = true, .seconds = 1};
+    static const char *const garbage[] = {"inf", "-inf", "nan",  "1e999", "word", "1x",
+                                          " 1",  "0x1p", "-0.5", "1,1",   "-"};
+    static const int never_empty[] = {VALUE, FINE, SEED, SECONDS, PHASE};
+    static const int not_negative[] = {SECONDS, PHASE, PERCENTILE, FLIP, ESTIMATE, BOUND, RADIUS};
+    char *bytes;
+    assert_int_equal(record_append(quiet(), path, &key, &run), OK);
+    slurp(path, &bytes);
+    for (int n = VALUE; n <= RADIUS; n++) {
+        assert_true(is_read_with(bytes, n, n == FINE ? "1" : "2"));
+        for (size_t i = 0; i < sizeof garbage / sizeof *garbage; i++)
+            if (strcmp(garbage[i], "-0.5") != 0 && is_read_with(bytes, n, garbage[i]))
+                fail_msg("field %d was '%s' and read", n, garbage[i]);
+    }
+    for (size_t i = 0; i < sizeof never_empty / sizeof *never_empty; i++)
+        assert_false(is_read_with(bytes, never_empty[i], ""));
+    for (size_t i = 0; i < sizeof not_negative / sizeof *not_negative; i++)
+        assert_false(is_read_with(bytes, not_negative[i], "-0.5"));
+    assert_true(is_read_with(bytes, MSE, "-0.5") && is_read_with(bytes, RELMSE, "-0.5"));
+    for (int n = MSE; n <= RADIUS; n++)
+        assert_true(is_read_with(bytes, n, ""));
+    static const char *const seeds[] = {"-1", "0.5", "1e30", "1001"};
+    for (size_t i = 0; i < sizeof seeds / sizeof *seeds; i++)
+        assert_false(is_read_with(bytes, SEED, seeds[i]));
+    assert_false(is_read_with(bytes, FINE, "2"));
+    free(bytes);
+}
+
 /* --- analysis ------------------------------------------------------------------------------- */
 
 typedef struct Runs {
@@ -463,8 +520,12 @@ static void every_setting_has_its_turn(void **state)
     r.runs[0].phase[PHASE_EYE] = 1;
     bool *is_left = calloc((size_t)(STUDY_SEEDS * r.setup.count), sizeof *is_left);
     bool is_seen[SETTING_COUNT] = {false}, is_second = false;
-    Study study = {
-        .points = r.setup.points, .count = r.setup.count, .runs = r.runs, .is_left = is_left};
+    const char **refusals = calloc((size_t)r.setup.count, sizeof *refusals);
+    Study study = {.points = r.setup.points,
+                   .count = r.setup.count,
+                   .runs = r.runs,
+                   .is_left = is_left,
+                   .refusals = refusals};
     int next, done = 1;
     while ((next = schedule_next(&study)) >= 0) {
         const StudyPoint *point = &r.setup.points[next / STUDY_SEEDS];
@@ -480,8 +541,59 @@ static void every_setting_has_its_turn(void **state)
         is_seen[point->setting] = true;
     }
     assert_int_equal(done, STUDY_SEEDS * r.setup.count);
+    free(refusals);
     free(is_left);
     end(&r);
+}
+
+/* What cannot be rendered never comes, and keeps no other value of its setting from coming first.
+ */
+static void what_is_refused_has_no_turn(void **state)
+{
+    (void)state;
+    Runs r;
+    begin(&r);
+    r.runs[0].phase[PHASE_EYE] = 1;
+    bool *is_left = calloc((size_t)(STUDY_SEEDS * r.setup.count), sizeof *is_left);
+    const char **refusals = calloc((size_t)r.setup.count, sizeof *refusals);
+    Study study = {.points = r.setup.points,
+                   .count = r.setup.count,
+                   .runs = r.runs,
+                   .is_left = is_left,
+                   .refusals = refusals};
+    int refused = schedule_next(&study) / STUDY_SEEDS, next, done = 1;
+    refusals[refused] = "not possible";
+    int other = schedule_next(&study) / STUDY_SEEDS;
+    assert_int_equal(r.setup.points[other].setting, r.setup.points[refused].setting);
+    while ((next = schedule_next(&study)) >= 0) {
+        assert_int_not_equal(next / STUDY_SEEDS, refused);
+        r.runs[next].is_done = true;
+        done++;
+    }
+    assert_int_equal(done, STUDY_SEEDS * (r.setup.count - 1));
+    assert_int_equal(study_left_count(&study), 0);
+    free(refusals);
+    free(is_left);
+    end(&r);
+}
+
+/* Errors are kept for the report, warnings go on. */
+static void errors_are_taken_aside(void **state)
+{
+    (void)state;
+    Aside aside;
+    Diag *shown = quiet();
+    aside_init(&aside, shown);
+    assert_string_equal(aside_reason(&aside, ERR_MEMORY), status_text(ERR_MEMORY));
+    diag_warn(&aside.diag, WARN_RENDER, SPAN_NONE, "dim");
+    assert_string_equal(last_message, "pms: warning: dim\n");
+    diag_fail(&aside.diag, ERR_USAGE, "no %s", "light");
+    diag_fail(&aside.diag, ERR_USAGE, "no shade");
+    assert_string_equal(last_message, "pms: warning: dim\n");
+    assert_string_equal(aside_reason(&aside, ERR_USAGE), "no light; no shade");
+    aside_clear(&aside);
+    assert_string_equal(aside_reason(&aside, ERR_USAGE), status_text(ERR_USAGE));
+    aside_done(&aside);
 }
 
 /* --- the reference -------------------------------------------------------------------------- */
@@ -534,12 +646,15 @@ int main(void)
         cmocka_unit_test(media_are_copied_to_be_changed),
         cmocka_unit_test(runs_come_back),
         cmocka_unit_test(lines_cut_short_are_skipped),
+        cmocka_unit_test(runs_that_make_no_sense_are_skipped),
         cmocka_unit_test(means_and_noise),
         cmocka_unit_test(trends_and_advice),
         cmocka_unit_test(fine_trends_tell_more),
         cmocka_unit_test(a_busy_machine_makes_nothing_worse),
         cmocka_unit_test(no_runs_no_claims),
         cmocka_unit_test(every_setting_has_its_turn),
+        cmocka_unit_test(what_is_refused_has_no_turn),
+        cmocka_unit_test(errors_are_taken_aside),
         cmocka_unit_test(noise_of_the_reference_cancels),
     };
     return cmocka_run_group_tests_name("study", tests, make_folder, remove_folder);
