@@ -10,6 +10,7 @@
 #include "base/hash.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -137,6 +138,8 @@ void checkpoint_difference(const char *there, const char *here, char *out, size_
                            a.name, a.value_length, a.value, b.value_length, b.value);
         used += (size_t)wrote;
     }
+    if (used == 0)
+        snprintf(out, size, "other settings, by another version of pms");
 }
 
 /* --- writing -------------------------------------------------------------------------------- */
@@ -244,6 +247,12 @@ static Status damaged(const Reader *r)
                      "'%s' is damaged, its checksum is wrong: it cannot be resumed from", r->path);
 }
 
+static Status senseless(const Reader *r, const char *what)
+{
+    return diag_fail(r->diag, ERR_FILE, "'%s' is damaged, it holds %s: it cannot be resumed from",
+                     r->path, what);
+}
+
 static Status cut_short(const Reader *r, size_t wanted)
 {
     return diag_fail(r->diag, ERR_FILE,
@@ -309,6 +318,38 @@ static void get_sum(Stream *in, FilmSum *sum)
     get(in, sum->good, sum->pixels * sizeof *sum->good);
 }
 
+static bool is_radius(double radius)
+{
+    return isfinite(radius) && radius >= 0;
+}
+
+/* Samples that are not numbers are not in the sums, and none is taken twice.  What errors are
+ * found from may have no number. */
+static Status check_sum(const Reader *r, const FilmSum *sum)
+{
+    for (size_t i = 0; i < sum->clues; i++)
+        if (isnan(sum->values[i]))
+            return senseless(r, "sums that are no numbers");
+    for (size_t i = 0; i < sum->pixels; i++)
+        if (sum->good[i] > sum->taken[i])
+            return senseless(r, "more usable samples than were taken");
+    return OK;
+}
+
+/* A checksum says that the values are those that were written, not that they make sense. */
+static Status check_state(const Reader *r, const SeriesState *state)
+{
+    const Header *header = &r->header;
+    if (!is_radius(header->caustic_radius) || !is_radius(header->global_radius) ||
+        !is_radius(header->volume_radius))
+        return senseless(r, "a gather radius that is none");
+    for (size_t i = 0; i < state->steering.pixels; i++)
+        if (!(state->steering.rate[i] >= 0 && state->steering.rate[i] <= UINT16_MAX))
+            return senseless(r, "a rate of samples that no pass has");
+    TRY(check_sum(r, &state->halves[0]));
+    return check_sum(r, &state->halves[1]);
+}
+
 static Status read_state(Reader *r, const char *settings, SeriesState *state)
 {
     TRY(read_head(r));
@@ -316,7 +357,7 @@ static Status read_state(Reader *r, const char *settings, SeriesState *state)
     for (int i = 0; i < 2; i++)
         get_sum(&r->in, &state->halves[i]);
     get(&r->in, state->steering.rate, state->halves->pixels * sizeof *state->steering.rate);
-    return get_hash(&r->in) ? OK : damaged(r);
+    return get_hash(&r->in) ? check_state(r, state) : damaged(r);
 }
 
 Status checkpoint_read(Diag *diag, const char *path, const char *settings, SeriesState *state,

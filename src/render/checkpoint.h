@@ -23,8 +23,8 @@ Status checkpoint_write(Diag *diag, const char *path, const char *settings,
 
 /* Read a state that was written with the same settings, into one made for the same film.  Without
  * a file at `path`, *is_there is false and all else as it was.  ERR_FILE, after a message, for a
- * file that cannot be read, is cut short or damaged; ERR_USAGE for one of other settings: the
- * message says which.  The state is then of no use. */
+ * file that cannot be read, is cut short, damaged or has values that no series has; ERR_USAGE for
+ * one of other settings: the message says which.  The state is then of no use. */
 Status checkpoint_read(Diag *diag, const char *path, const char *settings, SeriesState *state,
                        bool *is_there);
 

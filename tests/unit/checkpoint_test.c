@@ -30,7 +30,7 @@ static Film make_film(unsigned layers)
     options.width = 5;
     options.height = 3;
     options.layers = layers;
-    assert_int_equal(film_init(&film, &options, FILM_SAMPLES, NULL), OK);
+    assert_int_equal(film_init(&film, &options, FILM_SAMPLES | FILM_CLUES, NULL), OK);
     film.samples = samples;
     return film;
 }
@@ -59,8 +59,8 @@ static SeriesState some_state(void)
                              : i % 3 == 0 ? -1e-310
                                           : 1.0 / (double)(i + 1 + (size_t)h);
         for (uint32_t i = 0; i < PIXELS; i++) {
-            sum->taken[i] = 100 * i + (uint32_t)h;
-            sum->good[i] = UINT32_MAX - i;
+            sum->taken[i] = UINT32_MAX - i;
+            sum->good[i] = 100 * i + (uint32_t)h;
             made.steering.rate[i] = 1.0f / (float)(i + 1);
         }
         sum->passes = h ? 12 : 13;
@@ -163,6 +163,81 @@ static void any_damage_is_seen(void **state)
     }
     assert_true(damaged >= 8 * ((int)size - 32));
     free(bytes);
+}
+
+typedef enum Spot { RATE, CAUSTIC, GLOBAL, VOLUME, VALUE, DEPTH, CLUE } Spot;
+
+/* Put a number somewhere into a state. */
+static void put_number(SeriesState *made, Spot place, double number)
+{
+    FilmSum *sum = &made->halves[1];
+    double *places[] = {
+        [CAUSTIC] = &made->first.caustic,         [GLOBAL] = &made->first.global,
+        [VOLUME] = &made->first.volume,           [VALUE] = &sum->values[2],
+        [DEPTH] = &sum->values[sum->z_begin + 1], [CLUE] = &sum->values[sum->clues]};
+    if (place == RATE)
+        made->steering.rate[PIXELS - 1] = (float)number;
+    else
+        *places[place] = number;
+}
+
+/* Write a state with a number in it and read it again. */
+static Status read_with(Spot place, double number)
+{
+    const char *path = in_folder("senseless");
+    SeriesState made = some_state();
+    put_number(&made, place, number);
+    assert_int_equal(checkpoint_write(quiet(), path, SETTINGS, &made), OK);
+    series_state_done(&made);
+    return read_state(path, SETTINGS);
+}
+
+/* Numbers that no series has are refused, though the checksum is that of what was written. */
+static void what_makes_no_sense_is_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        Spot place;
+        double number;
+        bool is_good;
+        const char *what;
+    } cases[] = {{RATE, 0, true, ""},
+                 {RATE, UINT16_MAX, true, ""},
+                 {RATE, -1e-3, false, "rate of samples"},
+                 {RATE, NAN, false, "rate of samples"},
+                 {RATE, INFINITY, false, "rate of samples"},
+                 {RATE, 65536, false, "rate of samples"},
+                 {RATE, 1e30, false, "rate of samples"},
+                 {CAUSTIC, 0, true, ""},
+                 {CAUSTIC, -1, false, "gather radius"},
+                 {GLOBAL, NAN, false, "gather radius"},
+                 {VOLUME, INFINITY, false, "gather radius"},
+                 {VALUE, -3, true, ""}, /* filters may be negative */
+                 {VALUE, NAN, false, "no numbers"},
+                 {DEPTH, INFINITY, true, ""},
+                 {DEPTH, NAN, false, "no numbers"},
+                 {CLUE, NAN, true, ""}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        assert_int_equal(read_with(cases[i].place, cases[i].number),
+                         cases[i].is_good ? OK : ERR_FILE);
+        if (cases[i].is_good)
+            continue;
+        assert_non_null(strstr(last_message, "senseless' is damaged"));
+        assert_non_null(strstr(last_message, cases[i].what));
+    }
+}
+
+static void no_more_samples_are_used_than_taken(void **state)
+{
+    (void)state;
+    const char *path = in_folder("counts");
+    SeriesState made = some_state();
+    made.halves[0].good[3] = 8;
+    made.halves[0].taken[3] = 7;
+    assert_int_equal(checkpoint_write(quiet(), path, SETTINGS, &made), OK);
+    series_state_done(&made);
+    assert_int_equal(read_state(path, SETTINGS), ERR_FILE);
+    assert_non_null(strstr(last_message, "counts' is damaged"));
 }
 
 static void other_settings_are_named(void **state)
@@ -282,6 +357,8 @@ int main(void)
         cmocka_unit_test(no_file_is_no_error),
         cmocka_unit_test(another_length_is_refused),
         cmocka_unit_test(any_damage_is_seen),
+        cmocka_unit_test(what_makes_no_sense_is_refused),
+        cmocka_unit_test(no_more_samples_are_used_than_taken),
         cmocka_unit_test(other_settings_are_named),
         cmocka_unit_test(settings_are_described),
         cmocka_unit_test(a_full_disk_leaves_the_old_state),
