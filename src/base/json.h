@@ -4,7 +4,9 @@
 
 #include <stdio.h>
 
-/* Print a JSON string with its quotes, or a number (null when it is not finite). */
+/* Print a JSON string with its quotes, or a number (null when it is not finite).  A string is UTF-8
+ * whatever bytes the text has (names of files may have any): those that make no character become
+ * U+FFFD. */
 void json_string(FILE *file, const char *text);
 void json_number(FILE *file, double number);
 

@@ -3,6 +3,7 @@
 #include "base/arena.h"
 #include "base/diag.h"
 #include "base/guess.h"
+#include "base/json.h"
 #include "base/mem.h"
 #include "base/rng.h"
 #include "base/stats.h"
@@ -16,6 +17,7 @@
 #include <cmocka.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static void test_mem_fails_on_order(void **state)
@@ -250,6 +252,58 @@ static void test_status_and_stats(void **state)
     assert_string_equal(phase_name(PHASE_EYE), "eye");
 }
 
+/* Return what json_string prints of a text; free it. */
+static char *as_json(const char *text)
+{
+    char *out;
+    size_t size;
+    FILE *file = open_memstream(&out, &size);
+    assert_non_null(file);
+    json_string(file, text);
+    assert_int_equal(fclose(file), 0);
+    return out;
+}
+
+#define FFFD "\xEF\xBF\xBD"
+
+/* What is no UTF-8 becomes U+FFFD, one for each part that a character could begin with; the last
+ * and the first characters of every length stay. */
+static void test_json_is_utf8(void **state)
+{
+    (void)state;
+    static const char *const cases[][2] = {
+        {"", ""},
+        {"a\"b\\\n\x7f", "a\\\"b\\\\\\u000a\\u007f"},
+        {"\xC2\x80 \xDF\xBF", "\xC2\x80 \xDF\xBF"},
+        {"\xE0\xA0\x80 \xED\x9F\xBF", "\xE0\xA0\x80 \xED\x9F\xBF"},
+        {"\xEE\x80\x80 \xEF\xBF\xBF", "\xEE\x80\x80 \xEF\xBF\xBF"},
+        {"\xF0\x90\x80\x80 \xF4\x8F\xBF\xBF", "\xF0\x90\x80\x80 \xF4\x8F\xBF\xBF"},
+        {"gr\xFC"
+         "n",
+         "gr" FFFD "n"},                                /* Latin-1 */
+        {"\x80\xBF", FFFD FFFD},                        /* nothing before them */
+        {"\xC0\xAF \xC1\xBF", FFFD FFFD " " FFFD FFFD}, /* overlong */
+        {"\xE0\x9F\xBF", FFFD FFFD FFFD},
+        {"\xF0\x8F\xBF\xBF", FFFD FFFD FFFD FFFD},
+        {"\xED\xA0\x80\xED\xBF\xBF", FFFD FFFD FFFD FFFD FFFD FFFD}, /* surrogates */
+        {"\xF4\x90\x80\x80", FFFD FFFD FFFD FFFD},                   /* beyond U+10FFFF */
+        {"\xF5\x80\xFE\xFF", FFFD FFFD FFFD FFFD},
+        {"\xC3\"", FFFD "\\\""}, /* cut short */
+        {"\xE2\x82"
+         "A",
+         FFFD "A"},
+        {"\xF0\x9F\x92\xE2\x82\xAC", FFFD "\xE2\x82\xAC"},
+        {"x\xC3", "x" FFFD},
+        {"\xE2\x82", FFFD},
+        {"\xF0\x9F\x92", FFFD}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char wanted[128], *found = as_json(cases[i][0]);
+        snprintf(wanted, sizeof wanted, "\"%s\"", cases[i][1]);
+        assert_string_equal(found, wanted);
+        free(found);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -264,6 +318,7 @@ int main(void)
         cmocka_unit_test(test_rng),
         cmocka_unit_test(test_work),
         cmocka_unit_test(test_status_and_stats),
+        cmocka_unit_test(test_json_is_utf8),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
