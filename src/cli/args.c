@@ -178,8 +178,6 @@ static Status set_option(Args *args, int id, const char *value)
         return args_add_effects(args, value);
     if (id == OPT_NO_PHOTONS)
         args_add_no_photons(args);
-    if (id == OPT_AA)
-        args->has_pov_aa = false;
     return OK;
 }
 
@@ -238,15 +236,27 @@ static Status parse_long(Args *args, int bit, int *i)
     return unknown_option(args, word, name, length, bit);
 }
 
+/* Return true if letters behind one dash are the name of an option, or a slip of the fingers for
+ * one that begins alike: -width and -widht are no -w with a value. */
+static bool is_long_name(int bit, const char *name, size_t length)
+{
+    Guess guess = guess_begin(name, length);
+    for (int id = 0; id < OPTION_COUNT && length > 1; id++) {
+        if (is_option(&options[id], bit, name, length))
+            return true;
+        if ((options[id].commands & bit) && options[id].name[0] == name[0])
+            guess_try(&guess, options[id].name);
+    }
+    return length > 1 && guess.best;
+}
+
 /* A -x, -xvalue, -x=value or -x value at argv[*i]. */
 static Status parse_short(Args *args, int bit, int *i)
 {
     const char *word = args->argv[*i], *name = word + 1;
     size_t length = strcspn(name, "=");
-    bool is_long_name = false; /* -width is no -w with the value "idth" */
-    for (int id = 0; id < OPTION_COUNT; id++)
-        is_long_name = is_long_name || (length > 1 && is_option(&options[id], bit, name, length));
-    for (int id = 0; id < OPTION_COUNT && !is_long_name; id++) {
+    bool is_long = is_long_name(bit, name, length);
+    for (int id = 0; id < OPTION_COUNT && !is_long; id++) {
         const Option *option = &options[id];
         if (!(option->commands & bit) || option->letter != name[0])
             continue;
@@ -432,6 +442,11 @@ static Status read_antialiasing(const Args *args, RenderOptions *out)
 {
     long samples;
     TRY(args_int(args, OPT_AA, 1, SAMPLES_MAX, 0, &samples));
+    if (args->has_pov_aa && samples)
+        return diag_fail(args->diag, ERR_USAGE,
+                         "+A has no meaning with --aa, which takes %ld samples of every pixel; "
+                         "leave one of them out",
+                         samples);
     if (args->has_pov_aa) {
         out->aa = args->aa_method == 2 ? AA_POV2 : AA_POV1;
     } else if (samples) {

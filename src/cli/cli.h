@@ -48,7 +48,7 @@ typedef struct Args {
     int declare_count;
     Tri effects[FEATURE_COUNT]; /* --effect, --no-photons: of each effect the last holds */
     /* what POV-style switches set */
-    bool has_pov_aa, is_aa_off;
+    bool has_pov_aa;
     int aa_method, aa_depth;        /* +AM, +R; 0: not given */
     double aa_threshold, aa_jitter; /* +A0.n, +J; negative: not given */
     bool is_jitter_off;             /* -J */

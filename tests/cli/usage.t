@@ -46,6 +46,17 @@ fails 2 "no option --wdith.*did you mean --width" "a slip of the fingers" "$PMS"
 fails 2 "no option --integrater; did you mean --integrator\?" "and with a value behind it" \
     "$PMS" --integrater path "$T/s.pms"
 fails 2 "no option -width; did you mean --width\?" "a long name behind one dash" "$PMS" -width 3 "$T/s.pms"
+fails 2 "no option -widht; did you mean --width\?" "and one misspelled" "$PMS" -widht 3 "$T/s.pms"
+fails 2 "no option -outptu; did you mean --output\?" "which is no name of a file either" "$PMS" -outptu=a.png "$T/s.pms"
+fails 2 "no option -declrae; did you mean --declare\?" "nor a declaration" "$PMS" -declrae=N=3 "$T/s.pms"
+(cd "$T" && run "$PMS" s.pms -w8 --height=6 -oeffect.exr -dN=2 && [ "$code" -eq 0 ] && [ -s effect.exr ])
+ok $? "a value joined to a letter is one"
+for order in "--aa=4 +A0.1" "+A --aa=4"; do
+    fails 2 "\+A has no meaning with --aa, which takes 4 samples" "two ways to sample pixels: $order" \
+        "$PMS" $order "$T/s.pms" -o "$T/a.exr"
+done
+run "$PMS" +A -A --aa=2 "$T/s.pms" -w 8 --height=6 -o "$T/a.exr"
+ok "$code" "-A takes +A back"
 fails 2 "no command 'rendr'; did you mean render\?" "a misspelled command" "$PMS" rendr "$T/s.pms"
 fails 2 "no command 'chekc'; did you mean check\?" "a misspelled command alone" "$PMS" chekc
 cp "$T/s.pms" "$T/explan"
