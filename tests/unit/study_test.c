@@ -511,6 +511,21 @@ static void no_runs_no_claims(void **state)
 
 /* --- order ---------------------------------------------------------------------------------- */
 
+/* Return a study of these runs, none of which is left out; it lives as long as the scene. */
+static Study study_of(const Runs *r)
+{
+    Arena *arena = r->setup.scene->arena;
+    size_t count = (size_t)r->setup.count;
+    Study study = {.points = r->setup.points,
+                   .count = r->setup.count,
+                   .runs = r->runs,
+                   .is_left = ARENA_ARRAY(arena, bool, count *STUDY_SEEDS),
+                   .refusals = ARENA_ARRAY(arena, const char *, count)};
+    assert_non_null(study.is_left);
+    assert_non_null(study.refusals);
+    return study;
+}
+
 /* One value of each setting comes before the second of any, and all comes at last. */
 static void every_setting_has_its_turn(void **state)
 {
@@ -518,14 +533,8 @@ static void every_setting_has_its_turn(void **state)
     Runs r;
     begin(&r);
     r.runs[0].phase[PHASE_EYE] = 1;
-    bool *is_left = calloc((size_t)(STUDY_SEEDS * r.setup.count), sizeof *is_left);
     bool is_seen[SETTING_COUNT] = {false}, is_second = false;
-    const char **refusals = calloc((size_t)r.setup.count, sizeof *refusals);
-    Study study = {.points = r.setup.points,
-                   .count = r.setup.count,
-                   .runs = r.runs,
-                   .is_left = is_left,
-                   .refusals = refusals};
+    Study study = study_of(&r);
     int next, done = 1;
     while ((next = schedule_next(&study)) >= 0) {
         const StudyPoint *point = &r.setup.points[next / STUDY_SEEDS];
@@ -541,28 +550,19 @@ static void every_setting_has_its_turn(void **state)
         is_seen[point->setting] = true;
     }
     assert_int_equal(done, STUDY_SEEDS * r.setup.count);
-    free(refusals);
-    free(is_left);
     end(&r);
 }
 
-/* What cannot be rendered never comes, and keeps no other value of its setting from coming first.
- */
+/* What cannot be rendered never comes, and another value of its setting comes first instead. */
 static void what_is_refused_has_no_turn(void **state)
 {
     (void)state;
     Runs r;
     begin(&r);
     r.runs[0].phase[PHASE_EYE] = 1;
-    bool *is_left = calloc((size_t)(STUDY_SEEDS * r.setup.count), sizeof *is_left);
-    const char **refusals = calloc((size_t)r.setup.count, sizeof *refusals);
-    Study study = {.points = r.setup.points,
-                   .count = r.setup.count,
-                   .runs = r.runs,
-                   .is_left = is_left,
-                   .refusals = refusals};
+    Study study = study_of(&r);
     int refused = schedule_next(&study) / STUDY_SEEDS, next, done = 1;
-    refusals[refused] = "not possible";
+    study.refusals[refused] = "not possible";
     int other = schedule_next(&study) / STUDY_SEEDS;
     assert_int_equal(r.setup.points[other].setting, r.setup.points[refused].setting);
     while ((next = schedule_next(&study)) >= 0) {
@@ -572,8 +572,6 @@ static void what_is_refused_has_no_turn(void **state)
     }
     assert_int_equal(done, STUDY_SEEDS * (r.setup.count - 1));
     assert_int_equal(study_left_count(&study), 0);
-    free(refusals);
-    free(is_left);
     end(&r);
 }
 
