@@ -363,9 +363,9 @@ static Status begin(Study *study, StudyRun *own)
 static Status list_points(Study *study)
 {
     Status status = setting_grid(&study->base, study->arena, &study->points, &study->count);
-    size_t count = (size_t)study->count;
-    study->runs = ARENA_ARRAY(study->arena, StudyRun, STUDY_SEEDS * count);
-    study->is_left = ARENA_ARRAY(study->arena, bool, count *STUDY_SEEDS);
+    size_t count = (size_t)study->count, runs = STUDY_SEEDS * count;
+    study->runs = ARENA_ARRAY(study->arena, StudyRun, runs);
+    study->is_left = ARENA_ARRAY(study->arena, bool, runs);
     study->refusals = ARENA_ARRAY(study->arena, const char *, count);
     if (status != OK || !study->runs || !study->is_left || !study->refusals)
         return diag_no_memory(study->diag, "a study");

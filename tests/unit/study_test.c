@@ -515,11 +515,11 @@ static void no_runs_no_claims(void **state)
 static Study study_of(const Runs *r)
 {
     Arena *arena = r->setup.scene->arena;
-    size_t count = (size_t)r->setup.count;
+    size_t count = (size_t)r->setup.count, runs = STUDY_SEEDS * count;
     Study study = {.points = r->setup.points,
                    .count = r->setup.count,
                    .runs = r->runs,
-                   .is_left = ARENA_ARRAY(arena, bool, count *STUDY_SEEDS),
+                   .is_left = ARENA_ARRAY(arena, bool, runs),
                    .refusals = ARENA_ARRAY(arena, const char *, count)};
     assert_non_null(study.is_left);
     assert_non_null(study.refusals);
