@@ -12,7 +12,10 @@
 #include "base/work.h"
 #include "eye/eye_int.h"
 
-enum { PRETRACE_INDEX = 1 << 24 /* sample number, far from those of the picture */ };
+enum {
+    PRETRACE_INDEX = 1 << 24, /* sample number, far from those of the picture */
+    CACHE_RNG = 0x636163
+};
 
 typedef struct Round {
     const EyeOptions *options;
@@ -20,6 +23,7 @@ typedef struct Round {
     FreshRecords *rows; /* of this round */
     int step;           /* of the grid, pixels */
     int first, stride;  /* rows of the grid that this round does */
+    double at_x, at_y;  /* which place of a block of pixels is looked at, parts of it */
     bool is_last;       /* every pixel, for those that would have to gather for themselves */
 } Round;
 
@@ -30,15 +34,17 @@ static void do_row(void *ctx, size_t index, int thread)
         return; /* memory is out */
     EyeThread *eye = round->eyes[thread];
     int width = round->options->width, height = round->options->height, step = round->step;
-    int y = (round->first + (int)index * round->stride) * step + step / 2;
+    int y = (round->first + (int)index * round->stride) * step + (int)(round->at_y * step);
     y = y < height ? y : height - 1;
     eye->fresh = &round->rows[index];
     eye->fresh->is_last = round->is_last;
     for (int left = 0; left < width && !work_interrupted; left += step) {
-        int x = left + step / 2 < width ? left + step / 2 : width - 1;
+        int x = left + (int)(round->at_x * step);
+        x = x < width ? x : width - 1;
         EyeSample sample;
-        eye_sample(eye, x + 0.5, y + 0.5, (uint32_t)y * (uint32_t)width + (uint32_t)x,
-                   PRETRACE_INDEX + (uint32_t)step, &sample);
+        eye_sample(eye, x + round->at_x, y + round->at_y,
+                   (uint32_t)y * (uint32_t)width + (uint32_t)x, PRETRACE_INDEX + (uint32_t)step,
+                   &sample);
     }
     eye->fresh = NULL;
 }
@@ -112,9 +118,10 @@ void irradiance_caches_done(IrradianceCaches *caches)
 }
 
 /* Make empty caches; returns false when memory is out. */
-static bool make_caches(const Tracer *tracer, IrradianceCaches *out)
+static bool make_caches(const Tracer *tracer, double record_reach, IrradianceCaches *out)
 {
-    double reach = tracer_scene(tracer)->settings.radiosity.error_bound * CACHE_ERROR_UNIT;
+    double error = tracer_scene(tracer)->settings.radiosity.error_bound * CACHE_ERROR_UNIT;
+    double reach = error * record_reach;
     Bound bound = tracer_bound(tracer);
     V3 center = bound_center(bound);
     out->seen = irradiance_cache_new(center, bound_radius(bound), reach);
@@ -130,7 +137,16 @@ static void count_rays(Stats *stats)
         stats->count[STAT_CACHE_RAYS] += stats->count[kinds[i]];
         stats->count[kinds[i]] = 0;
     }
-    stats->count[STAT_BLUR_RAYS] = stats->count[STAT_BAND_RAYS] = stats->count[STAT_SKY_RAYS] = 0;
+    stats->count[STAT_SAMPLES] = stats->count[STAT_BLUR_RAYS] = 0;
+    stats->count[STAT_BAND_RAYS] = stats->count[STAT_SKY_RAYS] = 0;
+}
+
+/* Each of many passes has its records elsewhere. */
+static void move_grid(Round *round, uint64_t seed)
+{
+    Rng rng = rng_at(seed, CACHE_RNG, 0);
+    round->at_x = rng_double(&rng);
+    round->at_y = rng_double(&rng);
 }
 
 Status irradiance_cache_fill(const Tracer *tracer, const EyeOptions *options,
@@ -141,16 +157,20 @@ Status irradiance_cache_fill(const Tracer *tracer, const EyeOptions *options,
     if (!plan_has(tracer_plan(tracer), FEATURE_IRRADIANCE_CACHE))
         return OK;
     EyeThread **eyes = mem_array((size_t)filling->threads, sizeof *eyes);
-    Status status =
-        eyes && make_caches(tracer, out) ? OK : diag_no_memory(diag, "the irradiance cache");
+    Status status = eyes && make_caches(tracer, options->record_reach, out)
+                        ? OK
+                        : diag_no_memory(diag, "the irradiance cache");
     EyeOptions own = *options;
     own.cache = out->seen;
     own.near_cache = out->near;
+    own.seed = options->is_progressive ? filling->seed : options->seed;
     int made = 0;
     for (; status == OK && made < filling->threads; made++)
         status = eye_thread_new(tracer, &own, diag, &eyes[made]);
     if (status == OK) {
-        Round round = {.options = options, .eyes = eyes};
+        Round round = {.options = options, .eyes = eyes, .at_x = 0.5, .at_y = 0.5};
+        if (options->is_progressive)
+            move_grid(&round, filling->seed);
         status = do_rounds(&round, filling, out, diag);
     }
     Stats counted = {0};

@@ -8,6 +8,7 @@
 
 typedef struct CacheFilling {
     int threads;
+    uint64_t seed; /* of one of many passes: its records lie elsewhere; unused in a single one */
     void (*progress)(void *ctx, double fraction); /* or NULL */
     void *progress_ctx;
 } CacheFilling;

@@ -35,6 +35,8 @@ typedef struct EyeOptions {
     const IrradianceMap *irradiance;   /* for final gathering; NULL: it finds glow alone */
     const struct IrradianceCache *cache; /* NULL: gather everywhere */
     const struct IrradianceCache *near_cache; /* for what gather rays see near by; NULL: none */
+    double record_reach; /* how far its records hold, over what the scene asks for */
+    int gather_rays;     /* of a record */
     const VolumeIndex *volume;         /* photons in media; NULL: none */
     bool has_no_caustics, has_no_focus; /* no light reaches a target, so that none casts a full
                                            shadow: on surfaces, in media */

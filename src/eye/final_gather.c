@@ -106,13 +106,13 @@ static Rgb light_nearby(EyeThread *eye, const SurfaceSample *s, const Interiors 
     return rgb_add(light, rgb_mul(back, behind));
 }
 
-/* The light that arrives at a side of a surface: looked up, or in one of many passes from the
- * photons within the radius of the pass.  radius: see irradiance_at. */
+/* The light that arrives at a side of a surface: looked up, or in one of many passes without places
+ * from the photons within the radius of the pass.  radius: see irradiance_at. */
 static Rgb irradiance_there(EyeThread *eye, const SurfaceSample *s, V3 n, double *radius)
 {
     const EyeOptions *options = &eye->options;
     eye->trace.stats.count[STAT_LOOKUPS]++;
-    if (!options->is_progressive)
+    if (options->irradiance || !options->is_progressive)
         return irradiance_at(options->irradiance, &eye->trace, eye->gather, &s->at, n, radius);
     Rgb light = RGB_BLACK;
     *radius = 0;

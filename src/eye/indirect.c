@@ -26,14 +26,21 @@ static void keep_record(EyeThread *eye, const IrradianceRecord *record)
     fresh->items[fresh->count++] = *record;
 }
 
+/* The largest error of a record that is used. */
+static double cache_error(const EyeThread *eye)
+{
+    return eye->scene->settings.radiosity.error_bound * CACHE_ERROR_UNIT *
+           eye->options.record_reach;
+}
+
 /* The least radius of a record.  What reaches less than a pixel would be gathered for one sample of
  * the picture alone. */
 static double least_radius(const EyeThread *eye, double far)
 {
     const RadiositySettings *settings = &eye->scene->settings.radiosity;
     double pixel = eye->pixel + eye->pixel_angle * far;
-    double error = settings->error_bound * CACHE_ERROR_UNIT;
-    return fmax(settings->minimum_reuse * far, PIXEL_REACH * pixel / error);
+    double least = settings->minimum_reuse * eye->options.record_reach * far;
+    return fmax(least, PIXEL_REACH * pixel / cache_error(eye));
 }
 
 /* Make a record of what was gathered at a point. */
@@ -42,15 +49,15 @@ static IrradianceRecord make_record(const EyeThread *eye, V3 p, V3 n, const Gath
     const RadiositySettings *settings = &eye->scene->settings.radiosity;
     double far = v3_dist(p, eye->scene->camera.location), least = least_radius(eye, far);
     IrradianceRecord record;
-    irradiance_record_init(&record, p, n, light, least, fmax(least, settings->maximum_reuse * far));
+    irradiance_record_init(&record, p, n, light, eye->options.is_progressive, least,
+                           fmax(least, settings->maximum_reuse * far));
     return record;
 }
 
 static LightEstimate gather_point(EyeThread *eye, const SurfaceSample *s, V3 n,
                                   const Interiors *inside, bool is_faint)
 {
-    const RadiositySettings *settings = &eye->scene->settings.radiosity;
-    int rays = is_faint ? settings->count / FAINT_PART : settings->count;
+    int rays = eye->options.gather_rays / (is_faint ? FAINT_PART : 1);
     GatheredLight light;
     final_gather(eye, &s->at, n, inside, rays < RAYS_MIN ? RAYS_MIN : rays, &light);
     if (eye->fresh) {
@@ -60,16 +67,11 @@ static LightEstimate gather_point(EyeThread *eye, const SurfaceSample *s, V3 n,
     return (LightEstimate){.light = light.irradiance, .noise = rgb_gray(light.noise)};
 }
 
-/* The irradiance on the side of n. */
-static LightEstimate irradiance_seen(EyeThread *eye, const SurfaceSample *s, V3 n,
-                                     const Interiors *inside, bool is_faint)
+/* Read the irradiance on the side of n from the cache; returns false if it does not hold there. */
+static bool read_cache(EyeThread *eye, const SurfaceSample *s, V3 n, LightEstimate *out)
 {
     const RadiositySettings *settings = &eye->scene->settings.radiosity;
-    if (eye->options.is_progressive)
-        return (LightEstimate){.light = final_gather_few(eye, &s->at, n, inside)};
-    if (!eye->options.cache)
-        return gather_point(eye, s, n, inside, is_faint);
-    double error = settings->error_bound * CACHE_ERROR_UNIT;
+    double error = cache_error(eye);
     int needed = settings->is_always_sampling ? settings->nearest_count : 1;
     if (eye->fresh && !eye->fresh->is_last) {
         error *= settings->low_error_factor;
@@ -85,9 +87,20 @@ static LightEstimate irradiance_seen(EyeThread *eye, const SurfaceSample *s, V3 
         eye->trace.stats.count[STAT_CACHE_READS]++;
         eye->trace.stats.count[STAT_CACHE_MISSES] += read.count < needed;
     }
-    if (read.count >= needed && read.weight > 0)
-        return (LightEstimate){.light = cache_read_irradiance(&read),
-                               .noise = rgb_gray((float)cache_read_noise(&read))};
+    *out = (LightEstimate){.light = cache_read_irradiance(&read),
+                           .noise = rgb_gray((float)cache_read_noise(&read))};
+    return read.count >= needed && read.weight > 0;
+}
+
+/* The irradiance on the side of n. */
+static LightEstimate irradiance_seen(EyeThread *eye, const SurfaceSample *s, V3 n,
+                                     const Interiors *inside, bool is_faint)
+{
+    LightEstimate found;
+    if (eye->options.cache && read_cache(eye, s, n, &found))
+        return found;
+    if (eye->options.is_progressive && !eye->fresh)
+        return (LightEstimate){.light = final_gather_few(eye, &s->at, n, inside)};
     return gather_point(eye, s, n, inside, is_faint);
 }
 
@@ -95,7 +108,7 @@ bool nearby_light_read(EyeThread *eye, V3 p, V3 n, Rgb *light)
 {
     if (!eye->options.cache)
         return false;
-    double error = eye->scene->settings.radiosity.error_bound * CACHE_ERROR_UNIT;
+    double error = cache_error(eye);
     CacheRead read = {.p = p, .n = n, .error = error};
     irradiance_cache_read(eye->options.cache, &read);
     if (!(read.weight > 0)) {

@@ -45,10 +45,10 @@ static double vector_length(const float v[3])
 }
 
 void irradiance_record_init(IrradianceRecord *record, V3 p, V3 n, const GatheredLight *light,
-                            double least, double most)
+                            bool has_nearest, double least, double most)
 {
     const float channels[3] = {light->irradiance.r, light->irradiance.g, light->irradiance.b};
-    double radius = light->distance;
+    double radius = has_nearest ? fmin(light->distance, light->nearest) : light->distance;
     for (int c = 0; c < 3; c++) {
         double change = vector_length(light->shift[c]);
         if (change * radius > (double)channels[c])

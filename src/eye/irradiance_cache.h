@@ -24,9 +24,11 @@ typedef struct IrradianceRecord {
 } IrradianceRecord;
 
 /* Set the radius from what was gathered: the harmonic mean distance, less where the light changes
- * faster than that, within [least, most]. */
+ * faster than that, within [least, most].  With has_nearest it is no more than what is nearest:
+ * else records speak for the whole way to a corner, where light drops ever faster.  Those are many
+ * records of noise of their own, which shows unless it is averaged away. */
 void irradiance_record_init(IrradianceRecord *record, V3 p, V3 n, const GatheredLight *light,
-                            double least, double most);
+                            bool has_nearest, double least, double most);
 
 /* The weighted sum of records at a point. */
 typedef struct CacheRead {

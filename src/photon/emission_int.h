@@ -63,9 +63,9 @@ Rng emission_rng(const Emission *emission, const Beam *beam, uint64_t index);
 /* Send all photons; *out holds them in order of light, target and index. */
 Status emission_run(Emission *emission, PhotonList *out);
 
-/* Send one for every `part` photons, others than emission_run sends: for places that do not depend
- * on those.  The books do not count them. */
-Status emission_run_places(Emission *emission, int part, PhotonList *out);
+/* Send one for every `part` photons, at least one of a beam, others than emission_run sends: for
+ * places that do not depend on those.  The books do not count them. */
+Status emission_run_places(Emission *emission, double part, PhotonList *out);
 
 /* Draw new sequences of points for all beams, and new numbers for all photons. */
 void emission_set_keys(Emission *emission, uint64_t draw);

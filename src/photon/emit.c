@@ -196,13 +196,13 @@ Status emission_run(Emission *emission, PhotonList *out)
     return run(emission, true, out);
 }
 
-Status emission_run_places(Emission *emission, int part, PhotonList *out)
+Status emission_run_places(Emission *emission, double part, PhotonList *out)
 {
     emission_set_keys(emission, 1);
     emission->rules.keeps_light = false;
     for (int i = 0; i < emission->beam_count; i++) {
         Beam *beam = &emission->beams[i];
-        beam->rays = (beam->rays + (uint64_t)part - 1) / (uint64_t)part;
+        beam->rays = (uint64_t)ceil((double)beam->rays / part);
     }
     return run(emission, false, out);
 }

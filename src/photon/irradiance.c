@@ -13,12 +13,16 @@
 #include "photon/photon_map_int.h"
 
 enum {
-    PLACE_PHOTONS = 50, /* of an estimate */
-    CLEAR_RAYS = 8,     /* along the surface, to see whether something stands on it */
-    AREA_RAYS = 48,     /* to measure the disk */
-    LOOKUP_PLACES = 6,  /* nearest places that are tried, of each way they face */
-    LOOKUP_MORE = 32,   /* and if none of those is near for its radius */
-    PLACES_MOST = 3 * LOOKUP_MORE,
+    PLACE_PHOTONS = 50,   /* of an estimate */
+    PLACE_LEAST = 4,      /* of one of many passes */
+    CLEAR_RAYS = 8,       /* along the surface, to see whether something stands on it */
+    AREA_FOUND = 32,      /* of places that are tried to measure the disk */
+    AREA_RAYS_MOST = 640, /* for that */
+    LOOKUP_PLACES = 6,    /* nearest places that are tried, of each way they face */
+    LOOKUP_MORE = 5, /* times as many as before, if none of those is near for how dense they are */
+    LOOKUP_MOST = 150,
+    PLACES_MOST = 3 * LOOKUP_MOST,
+    SPACING_PLACES = 4, /* that tell how dense places are */
     CHUNK_PLACES = 256,
     IRRADIANCE_RNG = 0x697272,
     FLAG_CLUTTERED = 1 /* of a place, beside PHOTON_INSIDE: not all of the disk is seen from it */
@@ -30,6 +34,11 @@ enum {
 /* Photons whose mean place is further off, in radii, lie to one side: on a whole disk it is within
  * this with near certainty. */
 #define ASIDE_MOST 0.2
+
+/* On half a disk it is at 4/(3 pi).  Further off still the place is beside a bright patch whose
+ * photons are all that a disk reaches: half of it tells more of how dark it is here.  Else the
+ * light around all patches together would be more than there is. */
+#define BESIDE_MOST 0.5
 
 /* Bound on how far a place is off its surface, relative to its distance from the map's centre: it
  * is rounded to floats. */
@@ -46,9 +55,10 @@ enum {
 /* How far a place speaks for its surroundings, in radii of its disk. */
 #define PLACE_REACH 1.5
 
-/* Places are so dense that one nearer than this, in radii, is found almost always, except where
- * bright light ends: there places of small disks crowd on one side. */
-#define PLACE_NEAR 0.5
+/* Beyond the last places of light that ends in the dark, they speak for points nearer than so many
+ * mean distances to the nearest place: at the border of half a plane of places the mean is
+ * sqrt(2). */
+#define PLACE_BESIDE 1.4
 
 /* Which way places face: along an axis, the lower way or the higher. */
 enum { FACINGS = 6 };
@@ -62,12 +72,12 @@ enum { FACINGS = 6 };
 
 /* Places are found among those that face the same way: a search among all would go through
  * thousands of others before it finds a small surface that faces elsewhere, or that there is none.
- * Power: irradiance; direction: code of the radius; flags: see above. */
+ * Power: irradiance; direction: codes of radius and spacing; flags: see above. */
 struct IrradianceMap {
     PhotonMap *places[FACINGS]; /* NULL: none */
     double reach;               /* how far the furthest reaching place speaks, scene units */
     const PhotonMap *photons;   /* that the estimates were made from; must outlive the map */
-    double radius;              /* the most that an estimate reaches */
+    GatherLimits search;        /* of an estimate, of either side */
 };
 
 /* How much a normal faces one of the six ways. */
@@ -77,16 +87,35 @@ static double facing(V3 n, int way)
     return way & 1 ? along : -along;
 }
 
-/* A radius in 16 bits: its logarithm. */
-static uint16_t radius_encode(double radius)
+/* The logarithm of a positive number, in eighths, as a code of so many bits. */
+static unsigned log_encode(double x, int bits)
 {
-    double code = log2(radius) * 256 + 0x8000;
-    return (uint16_t)(code < 0 ? 0 : code > 0xffff ? 0xffff : code);
+    double middle = ldexp(1, bits - 1), code = rint(log2(x) * 8) + middle;
+    return (unsigned)fmin(fmax(code, 0), 2 * middle - 1);
 }
 
-static double radius_decode(const Photon *place)
+static double log_decode(unsigned code, int bits)
 {
-    return exp2(((double)(place->phi | place->theta << 8) - 0x8000) / 256);
+    return exp2(((double)code - ldexp(1, bits - 1)) / 8);
+}
+
+/* A place has its radius in so many low bits of `from`, and in the rest the spacing there over the
+ * radius. */
+enum { RADIUS_BITS = 10, SPACING_BITS = 6 };
+
+static double radius_decode(unsigned from)
+{
+    return log_decode(from & ((1 << RADIUS_BITS) - 1), RADIUS_BITS);
+}
+
+static double spacing_decode(unsigned from)
+{
+    return radius_decode(from) * log_decode(from >> RADIUS_BITS, SPACING_BITS);
+}
+
+static unsigned place_from(const Photon *place)
+{
+    return place->phi | (unsigned)place->theta << 8;
 }
 
 typedef struct PlaceWork {
@@ -95,7 +124,7 @@ typedef struct PlaceWork {
     Photon *places;
     size_t count;
     uint64_t seed;
-    double radius; /* the most an estimate reaches */
+    GatherLimits search; /* of an estimate, of either side */
     TraceThread *threads;
     GatherScratch **scratches;
 } PlaceWork;
@@ -140,13 +169,14 @@ static bool disk_is_clear(TraceThread *thread, const Disk *disk)
     return true;
 }
 
-/* Set how high above the surface to look along it: inside a solid not through its other face. */
+/* Set how high above the surface to look along it: not through another one that is nearer, as the
+ * other face of a thin solid or what rests on this one. */
 static void set_lift(TraceThread *thread, Disk *disk)
 {
     Hit hit;
     disk->lift = CLEAR_HEIGHT * disk->radius;
     Ray ray = {disk->p, disk->n, disk->rounding, 2 * disk->lift};
-    if (disk->is_inside && trace_closest(thread, &ray, RAY_LIGHT, &hit))
+    if (trace_closest(thread, &ray, RAY_LIGHT, &hit))
         disk->lift = hit.t / 2;
 }
 
@@ -160,21 +190,24 @@ static bool is_surface_below(TraceThread *thread, const Disk *disk, V3 p, double
            shape_point_is_inside(&hit.point, disk->n) == disk->is_inside;
 }
 
-/* The part of the disk that is surface and seen from its middle, weighed as photons are. */
+/* Return the part of the disk that is surface and seen from its middle, weighed as photons are, by
+ * trials of places that are drawn as the kernel weighs them.  It is what the light is divided by.
+ * The trials until so many are found are that number over the part in the mean, so that the mean of
+ * the inverse is right; of a fixed number of trials it would be too large. */
 static double disk_part(TraceThread *thread, const Disk *disk, Rng *rng)
 {
-    double found = 0;
+    int found = 0, tried = 0;
     double down = disk->lift + GATHER_SLAB * disk->radius;
     uint64_t key = rng_u64(rng);
-    for (int i = 0; i < AREA_RAYS; i++) {
-        V2 at = warp_disk(sample_2d((uint32_t)i, key));
-        V3 p = above(disk, at.u, at.v);
-        if (!is_clear(thread, above(disk, 0, 0), p))
-            continue;
-        if (is_surface_below(thread, disk, p, down))
-            found += gather_kernel(PLACE_KERNEL, at.u * at.u + at.v * at.v);
+    for (; found < AREA_FOUND && tried < AREA_RAYS_MOST; tried++) {
+        V2 at = warp_disk(sample_2d((uint32_t)tried, key));
+        double even = at.u * at.u + at.v * at.v; /* in [0, 1] */
+        double scale = even > 0 ? sqrt((1 - sqrt(1 - fmin(1, even))) / even) : 0;
+        V3 p = above(disk, scale * at.u, scale * at.v);
+        if (is_clear(thread, above(disk, 0, 0), p))
+            found += is_surface_below(thread, disk, p, down);
     }
-    return fmax(found, 1) / AREA_RAYS;
+    return fmax(found, 1) / tried;
 }
 
 static V3 photon_place(const PhotonMap *map, const Photon *photon)
@@ -225,15 +258,12 @@ static Rgb sum_photons(TraceThread *thread, const PhotonMap *map, const Disk *di
 }
 
 /* Find the photons that speak at a place. */
-static int find_photons(const PhotonMap *photons, const Photon *place, V3 p, double radius,
-                        GatherScratch *scratch, const uint32_t **index, double *radius2)
+static int find_photons(const PhotonMap *photons, const Photon *place, V3 p,
+                        const GatherLimits *search, GatherScratch *scratch, const uint32_t **index,
+                        double *radius2)
 {
-    const GatherLimits limits = {.max_photons = PLACE_PHOTONS,
-                                 .max_radius = radius,
-                                 .shape = GATHER_DISK,
-                                 .normal_cosine = PHOTON_COSINE,
-                                 .side =
-                                     place->flags & PHOTON_INSIDE ? GATHER_INSIDE : GATHER_OUTSIDE};
+    GatherLimits limits = *search;
+    limits.side = place->flags & PHOTON_INSIDE ? GATHER_INSIDE : GATHER_OUTSIDE;
     return photon_nearest(photons, p, normal14_decode(place->flags >> 2), &limits, scratch, index,
                           radius2);
 }
@@ -250,21 +280,26 @@ static void estimate(PlaceWork *work, TraceThread *thread, GatherScratch *scratc
     const uint32_t *index;
     double radius2;
     v3_frame(disk.n, &disk.s, &disk.t);
-    int count = find_photons(work->photons, place, disk.p, work->radius, scratch, &index, &radius2);
+    int count =
+        find_photons(work->photons, place, disk.p, &work->search, scratch, &index, &radius2);
     disk.radius = sqrt(radius2);
     Rgb irradiance = RGB_BLACK;
     uint16_t flags = 0;
     if (count > 0 && radius2 > 0 && isfinite(radius2)) {
+        double aside = mean_aside(work->photons, &disk, index, count);
+        if (aside > BESIDE_MOST)
+            disk.radius /= 2;
         set_lift(thread, &disk);
         bool is_all_clear = disk_is_clear(thread, &disk);
         double part = 1;
-        if (!is_all_clear || mean_aside(work->photons, &disk, index, count) > ASIDE_MOST)
+        if (!is_all_clear || aside > ASIDE_MOST)
             part = disk_part(thread, &disk, &rng);
         flags = is_all_clear ? 0 : FLAG_CLUTTERED;
         irradiance = sum_photons(thread, work->photons, &disk, index, count, is_all_clear);
-        irradiance = rgb_scale(irradiance, (float)(1 / (PMS_PI * radius2 * part)));
+        irradiance =
+            rgb_scale(irradiance, (float)(1 / (PMS_PI * disk.radius * disk.radius * part)));
     }
-    uint16_t code = radius_encode(disk.radius);
+    unsigned code = log_encode(sqrt(radius2), RADIUS_BITS);
     rgbe_encode(irradiance, &rng, place->rgbe);
     place->phi = (uint8_t)code;
     place->theta = (uint8_t)(code >> 8);
@@ -296,25 +331,6 @@ static Status make_threads(PlaceWork *work, int threads, int *made, Diag *diag)
         }
     }
     return OK;
-}
-
-static Status estimate_all(PlaceWork *work, const IrradianceOptions *options, Diag *diag)
-{
-    int threads = options->threads;
-    int made = 0;
-    Status status = make_threads(work, threads, &made, diag);
-    if (status == OK)
-        status = work_for(threads, (work->count + CHUNK_PLACES - 1) / CHUNK_PLACES, estimate_chunk,
-                          work);
-    for (int i = 0; i < made; i++) {
-        stats_add(options->stats, &work->threads[i].stats);
-        trace_thread_done(&work->threads[i]);
-        gather_scratch_free(work->scratches[i]);
-    }
-    options->stats->count[STAT_PLACES] += work->count;
-    mem_free(work->threads);
-    mem_free(work->scratches);
-    return status;
 }
 
 /* The way a normal faces most. */
@@ -351,10 +367,93 @@ static Status build(const PlaceWork *work, const IrradianceOptions *options, Dia
             status = photon_map_watch(diag, map->places[way]);
     }
     map->photons = work->photons;
-    map->radius = work->radius;
+    map->search = work->search;
     for (size_t i = 0; i < work->count; i++)
-        map->reach = fmax(map->reach, PLACE_REACH * radius_decode(&work->places[i]));
+        map->reach = fmax(map->reach, PLACE_REACH * radius_decode(place_from(&work->places[i])));
     return status;
+}
+
+/* --- how dense places are ------------------------------------------------------------------- */
+
+static size_t chunks_of(size_t count)
+{
+    return (count + CHUNK_PLACES - 1) / CHUNK_PLACES;
+}
+
+typedef struct SpacingWork {
+    const PlaceWork *work;
+    PhotonMap *places;
+} SpacingWork;
+
+/* Return the mean distance from a point to the nearest place, as dense as places are there. */
+static double spacing_at(const PhotonMap *places, const Photon *place, GatherScratch *scratch)
+{
+    const GatherLimits limits = {.max_photons = SPACING_PLACES + 1, /* it is one of them */
+                                 .max_radius = INFINITY,
+                                 .shape = GATHER_DISK,
+                                 .normal_cosine = PLACE_COSINE,
+                                 .side =
+                                     place->flags & PHOTON_INSIDE ? GATHER_INSIDE : GATHER_OUTSIDE};
+    const uint32_t *index;
+    double radius2;
+    photon_nearest(places, photon_place(places, place), normal14_decode(place->flags >> 2), &limits,
+                   scratch, &index, &radius2);
+    return sqrt(radius2 * PMS_PI / SPACING_PLACES) / 2;
+}
+
+static void find_spacings_chunk(void *ctx, size_t index, int thread)
+{
+    SpacingWork *spacing = ctx;
+    PhotonMap *places = spacing->places;
+    size_t first = index * CHUNK_PLACES, end = first + CHUNK_PLACES;
+    for (size_t i = first; i < end && i < photon_map_count(places); i++) {
+        Photon place = photon_map_at(places, i);
+        double found = spacing_at(places, &place, spacing->work->scratches[thread]);
+        uint16_t *from = &places->blocks[i / BLOCK_PHOTONS].from[i % BLOCK_PHOTONS];
+        unsigned code = log_encode(found / radius_decode(*from), SPACING_BITS);
+        *from = (uint16_t)((unsigned)*from | code << RADIUS_BITS);
+    }
+}
+
+static Status find_spacings(const PlaceWork *work, PhotonMap *places, int threads)
+{
+    SpacingWork spacing = {work, places};
+    return places ? work_for(threads, chunks_of(photon_map_count(places)), find_spacings_chunk,
+                             &spacing)
+                  : OK;
+}
+
+static Status estimate_all(PlaceWork *work, const IrradianceOptions *options, Diag *diag,
+                           IrradianceMap *map)
+{
+    int threads = options->threads;
+    int made = 0;
+    Status status = make_threads(work, threads, &made, diag);
+    if (status == OK)
+        status = work_for(threads, chunks_of(work->count), estimate_chunk, work);
+    if (status == OK)
+        status = build(work, options, diag, map);
+    for (int way = 0; way < FACINGS && status == OK; way++)
+        status = find_spacings(work, map->places[way], threads);
+    for (int i = 0; i < made; i++) {
+        stats_add(options->stats, &work->threads[i].stats);
+        trace_thread_done(&work->threads[i]);
+        gather_scratch_free(work->scratches[i]);
+    }
+    options->stats->count[STAT_PLACES] += work->count;
+    mem_free(work->threads);
+    mem_free(work->scratches);
+    return status;
+}
+
+static GatherLimits place_search(const IrradianceOptions *options)
+{
+    int photons = (int)lrint(PLACE_PHOTONS * options->area);
+    double radius = PLACE_RADIUS_MOST * options->radius * sqrt(options->area);
+    return (GatherLimits){.max_photons = photons > PLACE_LEAST ? photons : PLACE_LEAST,
+                          .max_radius = radius > 0 ? radius : INFINITY,
+                          .shape = GATHER_DISK,
+                          .normal_cosine = PHOTON_COSINE};
 }
 
 Status irradiance_map_new(const Tracer *tracer, const PhotonMap *photons, Photon *places,
@@ -366,13 +465,10 @@ Status irradiance_map_new(const Tracer *tracer, const PhotonMap *photons, Photon
                       .places = places,
                       .count = count,
                       .seed = options->seed,
-                      .radius = PLACE_RADIUS_MOST * options->radius};
-    if (!(work.radius > 0))
-        work.radius = INFINITY;
+                      .search = place_search(options)};
     IrradianceMap *map = mem_alloc(sizeof *map);
-    Status status = map ? estimate_all(&work, options, diag) : diag_no_memory(diag, "irradiance");
-    if (status == OK)
-        status = build(&work, options, diag, map);
+    Status status =
+        map ? estimate_all(&work, options, diag, map) : diag_no_memory(diag, "irradiance");
     mem_free(places);
     if (status == OK)
         *out = map;
@@ -402,7 +498,7 @@ Status irradiance_map_see(const IrradianceMap *map, Diag *diag)
             double radius2;
             Photon place = photon_map_at(places, i);
             int count = find_photons(map->photons, &place, photon_place(places, &place),
-                                     map->radius, scratch, &index, &radius2);
+                                     &map->search, scratch, &index, &radius2);
             for (int k = 0; k < count; k++)
                 photon_map_see(map->photons, index[k]);
         }
@@ -418,94 +514,119 @@ typedef struct NearPlace {
     uint32_t index; /* in it */
     Photon place;
     V3 p;
-    double radius;
-    double distance2, off2; /* as GATHER_DISK measures it: in scene units and in radii, squared */
-    bool is_near;           /* for its radius */
+    double radius;       /* scene units */
+    double off2, apart2; /* squares of the distance as GATHER_DISK measures it, in radii and in
+                            units of the spacing there */
 } NearPlace;
 
-/* Of places near for their radii the nearest is the best: were it the one nearest in radii, those
- * that came out with large radii, and so with little light, would be chosen too often. */
-static bool is_better(const NearPlace *a, const NearPlace *b)
+/* Places around a point. */
+typedef struct Vicinity {
+    V3 p, n;
+    bool is_all; /* there are no more */
+    int looked_at;
+    V3 aside;      /* sum of the ways to them */
+    double apart2; /* sum of squares of distances */
+    int count;     /* of those that may speak, the best first */
+    NearPlace best[PLACES_MOST];
+} Vicinity;
+
+static void add_place(Vicinity *around, const PhotonMap *map, uint32_t index)
 {
-    if (a->is_near != b->is_near)
-        return a->is_near;
-    return a->is_near ? a->distance2 < b->distance2 : a->off2 < b->off2;
+    NearPlace near = {.map = map, .index = index, .place = photon_map_at(map, index)};
+    unsigned from = place_from(&near.place);
+    double radius = radius_decode(from), spacing = spacing_decode(from);
+    near.p = photon_place(map, &near.place);
+    near.radius = radius;
+    double distance2 = photon_distance2(map, &near.place, around->p, around->n);
+    near.off2 = distance2 / (radius * radius);
+    near.apart2 = distance2 / (spacing * spacing);
+    V3 to = v3_sub(near.p, around->p);
+    around->looked_at++;
+    around->aside = v3_add(around->aside, to);
+    around->apart2 += v3_len2(to);
+    if (!(near.off2 <= PLACE_REACH * PLACE_REACH))
+        return;
+    int at = around->count++;
+    for (; at > 0 && near.apart2 < around->best[at - 1].apart2; at--)
+        around->best[at] = around->best[at - 1];
+    around->best[at] = near;
 }
 
-/* Sort places found into those there are, the best first; returns how many there are then. */
-static int sort_places(const PhotonMap *map, const uint32_t *index, int count, V3 p, V3 n,
-                       NearPlace *out, int sorted)
+/* Find places that face as n does, of each way the `most` nearest. */
+static void find_places(const IrradianceMap *map, GatherScratch *scratch, GatherSide side, int most,
+                        Vicinity *around)
 {
-    for (int i = 0; i < count; i++) {
-        NearPlace near = {.map = map, .index = index[i], .place = photon_map_at(map, index[i])};
-        near.p = photon_place(map, &near.place);
-        near.radius = radius_decode(&near.place);
-        near.distance2 = photon_distance2(map, &near.place, p, n);
-        near.off2 = near.distance2 / (near.radius * near.radius);
-        near.is_near = near.off2 < PLACE_NEAR * PLACE_NEAR;
-        if (!(near.off2 <= PLACE_REACH * PLACE_REACH))
-            continue;
-        int at = sorted++;
-        for (; at > 0 && is_better(&near, &out[at - 1]); at--)
-            out[at] = out[at - 1];
-        out[at] = near;
-    }
-    return sorted;
-}
-
-/* Find places that face as n does, of each way the `most` nearest; *is_all says whether there are
- * no more. */
-static int find_places(const IrradianceMap *map, GatherScratch *scratch, const ShapePoint *at, V3 n,
-                       int most, NearPlace *out, bool *is_all)
-{
-    const GatherLimits limits = {.max_photons = most + 1,
+    const GatherLimits limits = {.max_photons = most + 1, /* the last sets the radius alone */
                                  .max_radius = map->reach,
                                  .shape = GATHER_DISK,
                                  .normal_cosine = PLACE_COSINE,
-                                 .side = gather_side(at, n)};
+                                 .side = side};
+    V3 n = around->n;
     double largest = fmax(fabs(n.x), fmax(fabs(n.y), fabs(n.z)));
-    int found = 0;
-    *is_all = true;
+    around->looked_at = around->count = 0;
+    around->aside = v3(0, 0, 0);
+    around->apart2 = 0;
+    around->is_all = true;
     for (int way = 0; way < FACINGS; way++) {
         const uint32_t *index;
         double radius2;
         if (!map->places[way] || facing(n, way) < largest - FACING_SLACK)
             continue;
-        int count = photon_nearest(map->places[way], at->p, n, &limits, scratch, &index, &radius2);
-        *is_all = *is_all && count <= most;
-        found =
-            sort_places(map->places[way], index, count < most ? count : most, at->p, n, out, found);
+        int count =
+            photon_nearest(map->places[way], around->p, n, &limits, scratch, &index, &radius2);
+        around->is_all = around->is_all && count < most;
+        for (int i = 0; i < count; i++)
+            add_place(around, map->places[way], index[i]);
     }
-    return found;
 }
 
-/* Find the places that may speak for a point, best first.  The nearest is not the best: beside a
- * bright patch, where places crowd, it would be one of the patch, and the patch would grow. */
-static int find_speakers(const IrradianceMap *map, GatherScratch *scratch, const ShapePoint *at,
-                         V3 n, NearPlace *out)
+/* Do all places lie to one side?  Of n at random the mean of the ways to them is as long as this
+ * with a chance of exp(-n/2). */
+static bool is_one_sided(const Vicinity *around)
 {
-    bool is_all;
-    int found = find_places(map, scratch, at, n, LOOKUP_PLACES, out, &is_all);
-    if (!is_all && !(found > 0 && out[0].is_near))
-        found = find_places(map, scratch, at, n, LOOKUP_MORE, out, &is_all);
-    return found;
+    return v3_len2(around->aside) > 0.5 * around->looked_at * around->apart2;
+}
+
+/* Find the places that may speak for a point, best first.
+ *
+ * Where bright light ends, places crowd on one side.  The nearest one would be of that side as far
+ * as into the dark, and bright patches would grow; the nearest in units of how dense places are
+ * meets the others halfway.  Were it the nearest in radii, those that came out with large radii by
+ * chance, and so with little light, would be chosen too often. */
+static void find_speakers(const IrradianceMap *map, GatherScratch *scratch, GatherSide side,
+                          Vicinity *around)
+{
+    int most = LOOKUP_PLACES;
+    do {
+        find_places(map, scratch, side, most, around);
+        most *= LOOKUP_MORE;
+    } while (!around->is_all && most <= LOOKUP_MOST &&
+             (around->count == 0 || is_one_sided(around)));
+    while (around->count > 0 && is_one_sided(around) &&
+           around->best[around->count - 1].apart2 > PLACE_BESIDE * PLACE_BESIDE)
+        around->count--;
 }
 
 Rgb irradiance_at(const IrradianceMap *map, TraceThread *thread, GatherScratch *scratch,
                   const ShapePoint *at, V3 n, double *radius)
 {
-    NearPlace near[PLACES_MOST];
+    Vicinity around; /* too large to be cleared */
+    around.p = at->p;
+    around.n = n;
+    around.count = 0;
     *radius = 0;
-    int count = map ? find_speakers(map, scratch, at, n, near) : 0;
-    for (int i = 0; i < count; i++) {
-        const Photon *place = &near[i].place;
-        double lift = CLEAR_HEIGHT * near[i].radius * sqrt(near[i].off2);
-        V3 other = v3_mad(near[i].p, lift, normal14_decode(place->flags >> 2));
+    if (map)
+        find_speakers(map, scratch, gather_side(at, n), &around);
+    for (int i = 0; i < around.count; i++) {
+        const NearPlace *near = &around.best[i];
+        const Photon *place = &near->place;
+        double lift = CLEAR_HEIGHT * near->radius * sqrt(near->off2);
+        V3 other = v3_mad(near->p, lift, normal14_decode(place->flags >> 2));
         V3 own = v3_mad(at->p, lift + 2 * at->p_error, n);
         if ((place->flags & FLAG_CLUTTERED) && !is_clear(thread, own, other))
             continue;
-        *radius = near[i].radius;
-        photon_map_see(near[i].map, near[i].index);
+        *radius = near->radius;
+        photon_map_see(near->map, near->index);
         return rgbe_decode(place->rgbe);
     }
     return RGB_BLACK;

@@ -14,6 +14,7 @@ typedef struct IrradianceMap IrradianceMap;
 typedef struct IrradianceOptions {
     uint64_t seed;
     int threads;
+    double area;   /* of disks, over that of the photons an estimate is made of */
     double radius; /* of searches in the photon map, scene units */
     Stats *stats;  /* counters are added there */
     bool is_watched; /* the photons are: keep which places are looked up */

@@ -31,8 +31,9 @@ static bool is_first_of_map(const Plan *plan, MapKind kind)
     return kind == MAP_FOCUS && is_wanted(plan, MAP_VOLUME);
 }
 
-/* Places where irradiance is computed ahead: for one, this many photons are sent. */
-enum { IRRADIANCE_PART = 4 };
+/* Places where irradiance is computed ahead: for one, this many photons are sent, in one of many
+ * passes so many more.  There are three of them in the disk of an estimate even so. */
+enum { IRRADIANCE_PART = 4, IRRADIANCE_PART_SERIES = 16 };
 
 /* A part of the progress bar. */
 typedef struct Progress {
@@ -211,19 +212,30 @@ static void take_books(Emission *emission, MapKind kind, PhotonBooks *out)
     emission->books = NULL;
 }
 
+/* Is irradiance looked up where gather rays end?  One of many passes that keeps no records shoots
+ * too few of them for that. */
+static bool has_places(const Plan *plan)
+{
+    return plan_has(plan, FEATURE_FINAL_GATHER) &&
+           (plan_has(plan, FEATURE_IRRADIANCE_CACHE) || !plan_has(plan, FEATURE_PROGRESSIVE));
+}
+
 /* Send photons of their own to find places, and estimate the irradiance there. */
 static Status make_irradiance(Emission *emission, Stats *stats, PhotonMaps *maps)
 {
     PhotonList places;
-    double started = clock_wall();
+    double started = clock_wall(), shrink = emission->options->shrink;
+    double area = shrink > 0 ? shrink * shrink : 1;
+    double part = shrink > 0 ? IRRADIANCE_PART_SERIES * area : IRRADIANCE_PART;
     int most = miniature_photons(emission->options->miniature,
                                  gather_most(&tracer_scene(emission->tracer)->settings.photons));
     IrradianceOptions options = {.seed = emission->options->seed,
                                  .threads = emission->options->threads,
                                  .stats = stats,
                                  .is_watched = emission->options->is_watched,
+                                 .area = area,
                                  .radius = photon_map_radius(maps->global, most)};
-    Status status = emission_run_places(emission, IRRADIANCE_PART, &places);
+    Status status = emission_run_places(emission, part, &places);
     if (status == OK && places.count == 0)
         mem_free(places.items);
     else if (status == OK)
@@ -255,9 +267,7 @@ static Status make_map(const Tracer *tracer, MapKind kind, const PhotonOptions *
         maps->has_no_focus = emission.budget == 0;
     if (status == OK && !is_first_of_map(tracer_plan(tracer), kind))
         status = build(&emission, stats, photons, from, map);
-    bool is_looked_up =
-        emission.rules.keeps_first && !plan_has(tracer_plan(tracer), FEATURE_PROGRESSIVE);
-    if (status == OK && kind == MAP_GLOBAL && *map && is_looked_up)
+    if (status == OK && kind == MAP_GLOBAL && *map && has_places(tracer_plan(tracer)))
         status = make_irradiance(&emission, stats, maps);
     if (status == OK)
         take_books(&emission, kind, &maps->books);

@@ -83,6 +83,7 @@ typedef struct PhotonOptions {
     uint64_t seed;
     int threads;
     double part;    /* of the photons that the scene asks for; 0: all */
+    double shrink;  /* of the radii that irradiance is estimated over ahead; 0: all of them */
     bool is_repeat; /* what there is to warn of was said in a pass before */
     bool is_watched; /* keep which photons are seen, and where they came from */
     const Miniature *miniature; /* NULL: a full picture */

@@ -280,28 +280,24 @@ static IndirectMethod indirect_method(const PlanOptions *options, const PmsSetti
 static void plan_indirect_method(const Scene *scene, const PlanOptions *options, Plan *plan)
 {
     static const char *const off[] = {"no indirect light from photons",
-                                      "the global map is looked at directly", "gathered everywhere",
-                                      "every pass gathers anew"};
+                                      "the global map is looked at directly",
+                                      "gathered everywhere"};
     const PmsSettings *pms = &scene->settings.pms;
     PlanRow *gather = &plan->rows[FEATURE_FINAL_GATHER];
     PlanRow *cache = &plan->rows[FEATURE_IRRADIANCE_CACHE];
     const PlanRow *map = &plan->rows[FEATURE_GLOBAL_MAP];
     IndirectMethod method = indirect_method(options, pms);
-    bool is_progressive = plan_has(plan, FEATURE_PROGRESSIVE);
     const char *asked = options->indirect ? "asked for on the command line"
                         : pms->method     ? "gi_method in pms{}"
                                       : "the way indirect light is found if nothing else is said";
     bool has_gather = map->is_on && method != INDIRECT_MAP;
-    bool has_cache = has_gather && method != INDIRECT_GATHER && !is_progressive;
+    bool has_cache = has_gather && method != INDIRECT_GATHER;
     if (!row_ruled_out(options, FEATURE_FINAL_GATHER, plan->rows))
         row_set(gather, has_gather, has_gather ? map->why : SPAN_NONE, "%s",
                 has_gather ? asked : off[map->is_on]);
     if (!row_ruled_out(options, FEATURE_IRRADIANCE_CACHE, plan->rows))
         row_set(cache, has_cache, has_gather ? map->why : SPAN_NONE, "%s",
-                has_cache ? asked
-                          : off[!has_gather      ? map->is_on
-                                : is_progressive ? 3
-                                                 : 2]);
+                has_cache ? asked : off[has_gather ? 2 : map->is_on]);
 }
 
 static void plan_glow(const Scene *scene, const PlanOptions *options, Plan *plan)

@@ -19,7 +19,7 @@
 
 static const char MAGIC[8] = "PMSSTATE";
 
-enum { BYTE_ORDER_MARK = 0x01020304, FORMAT_VERSION = 3 };
+enum { BYTE_ORDER_MARK = 0x01020304, FORMAT_VERSION = 4 };
 
 typedef struct Header {
     char magic[8];
@@ -27,7 +27,7 @@ typedef struct Header {
     uint64_t settings_size;            /* bytes */
     uint64_t value_count, pixel_count; /* of a half */
     uint64_t passes, planned;          /* so far, and until the next plan */
-    uint64_t photon_rays, eye_rays;
+    uint64_t shared_rays, eye_rays;
     double caustic_radius, global_radius, volume_radius; /* of the first pass */
 } Header;
 
@@ -180,7 +180,7 @@ static void put_state(Stream *out, const char *settings, const SeriesState *stat
                      .pixel_count = halves->pixels,
                      .passes = series_passes(state),
                      .planned = state->steering.until,
-                     .photon_rays = state->photon_rays,
+                     .shared_rays = state->shared_rays,
                      .eye_rays = state->eye_rays,
                      .caustic_radius = state->first.caustic,
                      .global_radius = state->first.global,
@@ -386,7 +386,7 @@ Status checkpoint_read(Diag *diag, const char *path, const char *settings, Serie
     state->halves[0].passes = (header->passes + 1) / 2;
     state->halves[1].passes = header->passes / 2;
     state->steering.until = header->planned;
-    state->photon_rays = header->photon_rays;
+    state->shared_rays = header->shared_rays;
     state->eye_rays = header->eye_rays;
     return OK;
 }

@@ -24,13 +24,13 @@ Status error_map_init(ErrorMap *map, const Film *film, Diag *diag)
     *map = (ErrorMap){.width = film->width, .height = film->height};
     map->noise = mem_array(pixels, sizeof(float));
     map->smooth = mem_array(pixels, sizeof(float));
-    map->caustic = mem_array(pixels, sizeof(float));
+    map->shared = mem_array(pixels, sizeof(float));
     map->bias = mem_array(pixels, sizeof(float));
     map->value = mem_array(pixels, sizeof(float));
     map->luminance = mem_array(pixels, sizeof(float));
     map->scratch = mem_array(pixels, sizeof(float));
     map->spare = mem_array(pixels, sizeof(float));
-    if (map->noise && map->smooth && map->caustic && map->bias && map->value && map->luminance &&
+    if (map->noise && map->smooth && map->shared && map->bias && map->value && map->luminance &&
         map->scratch && map->spare)
         return OK;
     error_map_done(map);
@@ -41,7 +41,7 @@ void error_map_done(ErrorMap *map)
 {
     mem_free(map->noise);
     mem_free(map->smooth);
-    mem_free(map->caustic);
+    mem_free(map->shared);
     mem_free(map->bias);
     mem_free(map->value);
     mem_free(map->luminance);
@@ -129,10 +129,10 @@ static void finish_map(ErrorMap *map)
     size_t pixels = (size_t)map->width * (size_t)map->height;
     average_around(map->luminance, map->scratch, map->width, map->height, NOISE_REACH);
     average_around(map->smooth, map->scratch, map->width, map->height, NOISE_REACH);
-    average_around(map->caustic, map->scratch, map->width, map->height, NOISE_REACH);
+    average_around(map->shared, map->scratch, map->width, map->height, NOISE_REACH);
     for (size_t i = 0; i < pixels; i++) {
         map->smooth[i] = sqrtf(map->smooth[i]);
-        map->caustic[i] = sqrtf(map->caustic[i]);
+        map->shared[i] = sqrtf(map->shared[i]);
     }
     finish_bias(map);
 }
@@ -150,11 +150,11 @@ void error_map_of_halves(const FilmSum halves[2], const Film *film, const SceneS
         double blur_b = half_clue(&halves[1], i, CLUE_BLUR);
         map->luminance[i] = map->value[i] = (float)film_linear(settings, value);
         map->noise[i] = (float)noise;
-        double caustic_a = half_clue(&halves[0], i, CLUE_CAUSTIC);
-        double caustic_b = half_clue(&halves[1], i, CLUE_CAUSTIC);
-        double caustic = all > 0 ? half_difference(caustic_a, caustic_b, n_a, n_b) * slope : 0;
+        double shared_a = half_clue(&halves[0], i, CLUE_SHARED);
+        double shared_b = half_clue(&halves[1], i, CLUE_SHARED);
+        double shared = all > 0 ? half_difference(shared_a, shared_b, n_a, n_b) * slope : 0;
         map->smooth[i] = (float)(noise * noise);
-        map->caustic[i] = (float)(caustic * caustic);
+        map->shared[i] = (float)(shared * shared);
         map->bias[i] = (float)(4 * blur_a * blur_b * slope * slope);
     }
     finish_map(map);

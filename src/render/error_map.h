@@ -29,7 +29,7 @@ typedef struct ErrorMap {
     float *luminance; /* the same, averaged over neighbours */
     float *noise;     /* an error as chance may make it, of either sign */
     float *smooth;    /* standard error, from the noise of the pixels around */
-    float *caustic;   /* as smooth, of the light of the caustic map alone; 0 of a single pass */
+    float *shared;    /* as smooth, of the light that samples of a pass share; 0 of a single one */
     float *bias;      /* magnitude */
     float *scratch, *spare; /* to work with */
 } ErrorMap;

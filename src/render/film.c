@@ -49,6 +49,7 @@ static bool add_layers(Film *film, unsigned use)
         film->channels += (int)strlen(kind->channels);
     }
     film->has_clues = use & FILM_CLUES;
+    film->has_shared_indirect = use & FILM_SHARED_INDIRECT;
     film->channels += film->has_clues ? CLUE_CHANNELS : 0;
     return !film->has_clues || image_add_layer(&film->image, "clues", "NBCSL");
 }
@@ -113,7 +114,9 @@ void film_vector(const Film *film, const EyeSample *s, float *out)
         return;
     at[CLUE_NOISE] = rgb_luminance(s->part[PART_NOISE]);
     at[CLUE_BLUR] = rgb_luminance(s->part[PART_BLUR]);
-    at[CLUE_CAUSTIC] = rgb_luminance(s->part[PART_CAUSTIC]);
+    at[CLUE_SHARED] = rgb_luminance(s->part[PART_CAUSTIC]);
+    if (film->has_shared_indirect)
+        at[CLUE_SHARED] += rgb_luminance(s->part[PART_INDIRECT]);
     float lens = rgb_luminance(s->lens_noise);
     at[CLUE_LENS] = lens * lens;
     at[CLUE_SQUARE] = rgb_luminance(beauty) * rgb_luminance(beauty);

@@ -13,7 +13,7 @@
 typedef enum ClueChannel {
     CLUE_NOISE,   /* standard error of the light of photons */
     CLUE_BLUR,    /* see LightEstimate */
-    CLUE_CAUSTIC, /* light of the caustic map */
+    CLUE_SHARED,  /* light that the samples of a pass take from the same photons or records */
     CLUE_SQUARE,  /* of the whole light */
     CLUE_LENS,    /* square of the standard error that the rays of focal blur leave */
     CLUE_CHANNELS
@@ -38,6 +38,7 @@ typedef struct Film {
     int z_channel;   /* of depth: the nearest counts, not the average; -1: none */
     unsigned layers; /* LayerBits */
     bool has_alpha;
+    bool has_shared_indirect; /* the samples of a pass share photons or records of indirect light */
     bool has_clues;        /* the last layer of the image is what errors are estimated from */
     PixelSamples *samples; /* of all pixels, of one of many passes; NULL: as the options say */
     Image image;
@@ -55,6 +56,7 @@ const char *film_layer_name(LayerBit layer);
 typedef enum FilmUse {
     FILM_SAMPLES = 1, /* its layers are means of samples */
     FILM_CLUES = 2,   /* what errors are estimated from is kept too */
+    FILM_SHARED_INDIRECT = 8, /* see has_shared_indirect */
     FILM_SHOWN = 4    /* it has the layers that are found from others at the end */
 } FilmUse;
 

@@ -18,6 +18,10 @@ enum { SERIES_PHOTONS = 12, SERIES_REACH = 48 };
  * (photon_map_radius). */
 #define SERIES_WIDEN 6
 
+/* One of many passes shoots so many times fewer rays for a record of the irradiance cache, but at
+ * least so many. */
+enum { SERIES_RAYS_PART = 4, SERIES_RAYS_LEAST = 16 };
+
 /* Photons in the ball around one in a medium, across which its light is spread. */
 enum { VOLUME_PHOTONS = 30 };
 
@@ -32,6 +36,7 @@ typedef struct Pass {
     VolumeIndex *volume;
     GatherLimits caustic_limits, global_limits;
     IrradianceCaches caches;
+    uint64_t cache_rays; /* that filled them */
 } Pass;
 
 /* --- photons -------------------------------------------------------------------------------- */
@@ -140,6 +145,7 @@ static Status make_maps(Pass *pass)
     const PassSeries *series = pass->options->series;
     PhotonOptions options = pass_photon_options(pass->options->render, pass->options->photon_seed);
     options.part = series ? series->photon_part : 0;
+    options.shrink = series ? series->shrink : 0;
     options.has_radii = series != NULL;
     options.is_repeat = (series && series->is_repeat) || pass->options->miniature;
     options.miniature = pass->options->miniature;
@@ -165,20 +171,41 @@ static void cache_progress(void *ctx, double fraction)
     options->progress(options->progress_ctx, &progress);
 }
 
+/* Rays but those of photons. */
+static uint64_t eye_rays(const Stats *stats)
+{
+    return stats->count[STAT_CAMERA_RAYS] + stats->count[STAT_CACHE_RAYS] +
+           stats->count[STAT_REFLECTED_RAYS] + stats->count[STAT_REFRACTED_RAYS] +
+           stats->count[STAT_DIFFUSE_RAYS] + stats->count[STAT_SHADOW_RAYS];
+}
+
 /* Fill the irradiance cache for a picture, if it has one. */
 static Status fill_cache(Pass *pass, EyeOptions *eye)
 {
     const RenderOptions *options = pass->options->render;
     double started = clock_wall();
+    uint64_t before = eye_rays(pass->stats);
     CacheFilling filling = {.threads = options->threads,
+                            .seed = pass->options->photon_seed,
                             .progress = options->progress ? cache_progress : NULL,
                             .progress_ctx = (void *)(uintptr_t)options};
     Status status =
         irradiance_cache_fill(pass->tracer, eye, &filling, pass->diag, pass->stats, &pass->caches);
     pass->stats->seconds[PHASE_IRRADIANCE] += clock_wall() - started;
+    pass->cache_rays = eye_rays(pass->stats) - before;
     eye->cache = pass->caches.seen;
     eye->near_cache = pass->caches.near;
     return status;
+}
+
+/* Rays of a record. */
+static int gather_rays(const Pass *pass)
+{
+    const PassSeries *series = pass->options->series;
+    int asked = tracer_scene(pass->tracer)->settings.radiosity.count;
+    double rays = series ? series->photon_part * asked / SERIES_RAYS_PART : asked;
+    int least = asked < SERIES_RAYS_LEAST ? asked : SERIES_RAYS_LEAST;
+    return rays > least ? (int)rays : least;
 }
 
 static Status fill_film(Pass *pass, Film *film)
@@ -194,6 +221,8 @@ static Status fill_film(Pass *pass, Film *film)
                       .caustic = pass->maps.caustic,
                       .global = pass->maps.global,
                       .irradiance = pass->maps.irradiance,
+                      .record_reach = series ? series->shrink : 1,
+                      .gather_rays = gather_rays(pass),
                       .volume = pass->volume,
                       .has_no_caustics = pass->maps.has_no_caustics,
                       .has_no_focus = pass->maps.has_no_focus,
@@ -227,6 +256,9 @@ Status pass_render(const Tracer *tracer, const PassOptions *options, Diag *diag,
         out->photon_stats.count[i] = stats->count[i] - before.count[i];
     if (status == OK)
         status = fill_film(&pass, film);
+    out->shared_rays =
+        stats->count[STAT_PHOTON_RAYS] - before.count[STAT_PHOTON_RAYS] + pass.cache_rays;
+    out->eye_rays = eye_rays(stats) - eye_rays(&before) - pass.cache_rays;
     if (status == OK && options->render->is_watched)
         status = photon_maps_count_seen(&pass.maps, diag);
     if (status == OK) {

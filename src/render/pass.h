@@ -26,6 +26,8 @@ typedef struct PassOptions {
 /* What a pass leaves beside the picture.  Free with pass_result_done. */
 typedef struct PassResult {
     PhotonBooks books;
+    uint64_t shared_rays; /* of photons, places and records: what all samples of the pass share */
+    uint64_t eye_rays;    /* of the samples */
     Stats photon_stats; /* of the counters those of the photon maps */
     PassRadii radii; /* of a pass that is the only one */
     uint64_t caustic_hash, global_hash, volume_hash; /* of the photon maps' bytes, 0: no map */

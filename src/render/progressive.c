@@ -226,16 +226,16 @@ static Status show_if_due(Series *s)
 
 /* --- steering ------------------------------------------------------------------------------- */
 
-/* Return the rays of a pass's photons as a number of samples that are as many rays; 0 before the
- * first pass. */
-static double photon_work(const SeriesState *state)
+/* Return the rays that all samples of a pass share, as a number of samples that are as many rays; 0
+ * before the first pass. */
+static double shared_work(const SeriesState *state)
 {
     double samples = 0, passes = (double)series_passes(state);
     for (int h = 0; h < 2; h++)
         for (size_t i = 0; i < state->halves[h].pixels; i++)
             samples += state->halves[h].taken[i];
     double a_sample = samples > 0 ? (double)state->eye_rays / samples : 0;
-    return a_sample > 0 && passes > 0 ? (double)state->photon_rays / passes / a_sample : 0;
+    return a_sample > 0 && passes > 0 ? (double)state->shared_rays / passes / a_sample : 0;
 }
 
 /* Return how many more passes there is time for, as they are now; infinite without a limit. */
@@ -281,7 +281,7 @@ static void plan_passes(Series *s)
     if (!s->out->error.is_known || s->is_reached)
         return;
     SteeringGoal goal = {.error = s->asked->progressive.error,
-                         .photon_work = photon_work(&s->state),
+                         .shared_work = shared_work(&s->state),
                          .passes_left = passes_affordable(s)};
     steering_plan(&s->state.steering, &s->errors, s->state.halves, &s->out->error, passes_done(s),
                   &goal);
@@ -310,13 +310,6 @@ static uint64_t half_seed(const Series *s, uint64_t half)
 {
     Rng rng = rng_at(s->asked->seed, HALF_RNG, half);
     return rng_u64(&rng);
-}
-
-static uint64_t eye_rays(const Stats *stats)
-{
-    return stats->count[STAT_CAMERA_RAYS] + stats->count[STAT_REFLECTED_RAYS] +
-           stats->count[STAT_REFRACTED_RAYS] + stats->count[STAT_DIFFUSE_RAYS] +
-           stats->count[STAT_SHADOW_RAYS];
 }
 
 /* Make pass `number` of so many of the photons onto the film, whose samples are set, and learn what
@@ -348,8 +341,8 @@ static Status run_pass(Series *s, double part)
     film_sum_follow(half, &s->film);
     TRY(make_pass(s, number, part * s->pace.photon_part, &state->first, &stats, &result));
     film_sum_add(half, &s->film);
-    state->photon_rays += stats.count[STAT_PHOTON_RAYS];
-    state->eye_rays += eye_rays(&stats);
+    state->shared_rays += result.shared_rays;
+    state->eye_rays += result.eye_rays;
     stats_add(&s->out->stats, &stats);
     photon_books_add(&s->out->books, &result.books, s->out->new_passes);
     s->out->caustic_hash = result.caustic_hash;
@@ -461,9 +454,18 @@ static Status finish(Series *s, Status status)
     return status;
 }
 
+/* Samples of a pass share its indirect light, unless each gathers its own. */
+static unsigned shared_use(const Plan *plan)
+{
+    bool is_gathered =
+        plan_has(plan, FEATURE_FINAL_GATHER) && !plan_has(plan, FEATURE_IRRADIANCE_CACHE);
+    return plan_has(plan, FEATURE_GLOBAL_MAP) && !is_gathered ? FILM_SHARED_INDIRECT : 0;
+}
+
 static Status make_films(Series *s)
 {
-    TRY(film_init(&s->film, s->asked, FILM_SAMPLES | FILM_CLUES, s->diag));
+    unsigned use = FILM_SAMPLES | FILM_CLUES | shared_use(tracer_plan(s->tracer));
+    TRY(film_init(&s->film, s->asked, use, s->diag));
     TRY(film_init(&s->shown, s->asked, FILM_SHOWN, s->diag));
     TRY(error_map_init(&s->errors, &s->film, s->diag));
     size_t pixels = (size_t)s->film.width * (size_t)s->film.height;

@@ -4,7 +4,7 @@
 Status series_state_init(SeriesState *state, const Film *film, float rate, uint64_t until,
                          Diag *diag)
 {
-    *state = (SeriesState){.photon_rays = 0};
+    *state = (SeriesState){.shared_rays = 0};
     Status status = steering_init(&state->steering, film, rate, until, diag);
     for (int i = 0; i < 2 && status == OK; i++)
         status = film_sum_init(&state->halves[i], film, diag);

@@ -10,7 +10,7 @@ typedef struct SeriesState {
     PassRadii first;      /* gather radii of the first pass */
     FilmSum halves[2];    /* the first has the passes with even numbers, counted from 0 */
     Steering steering;    /* the plan for the passes to come */
-    uint64_t photon_rays; /* of all passes so far */
+    uint64_t shared_rays; /* of all passes so far: see PassResult */
     uint64_t eye_rays;
 } SeriesState;
 

@@ -55,7 +55,7 @@ typedef struct Planning {
     Steering *steering;
     const ErrorMap *map;
     const FilmSum *halves;
-    double photon_work; /* of a pass, in samples of every pixel */
+    double shared_work; /* of a pass, in samples of every pixel */
     double passes;      /* to come */
 } Planning;
 
@@ -69,10 +69,10 @@ static double taken(const Planning *p, size_t i)
  * n; this n makes the most of it. */
 static double rate_most(const Planning *p, size_t i)
 {
-    double error = (double)p->map->smooth[i], caustic = (double)p->map->caustic[i];
-    double part = error > 0 ? caustic * caustic / (error * error) : 0;
-    part = fmin(1, fmax(part, p->photon_work > 0 ? HIDDEN_PHOTON_PART : 0));
-    double most = part > 0 ? fmax(1, sqrt((1 - part) / part * p->photon_work)) : INFINITY;
+    double error = (double)p->map->smooth[i], shared = (double)p->map->shared[i];
+    double part = error > 0 ? shared * shared / (error * error) : 0;
+    part = fmin(1, fmax(part, p->shared_work > 0 ? HIDDEN_PHOTON_PART : 0));
+    double most = part > 0 ? fmax(1, sqrt((1 - part) / part * p->shared_work)) : INFINITY;
     return fmin(most, STEERING_RATE_MOST);
 }
 
@@ -108,7 +108,7 @@ static double samples_for(const Planning *p, double level)
  * none. */
 static double affordable_rate(const Planning *p)
 {
-    double work = p->photon_work > 0 ? p->photon_work : 1;
+    double work = p->shared_work > 0 ? p->shared_work : 1;
     return fmin(STEERING_RATE_MOST, fmax(SHARE_LEAST, work));
 }
 
@@ -155,7 +155,7 @@ void steering_plan(Steering *steering, const ErrorMap *map, const FilmSum halves
     Planning p = {.steering = steering,
                   .map = map,
                   .halves = halves,
-                  .photon_work = goal->photon_work / (double)steering->pixels,
+                  .shared_work = goal->shared_work / (double)steering->pixels,
                   .passes = (double)ahead};
     steering->until = passes + ahead;
     if (!(figure->noise > 0))

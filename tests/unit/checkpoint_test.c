@@ -49,7 +49,7 @@ static SeriesState some_state(void)
 {
     SeriesState made = make_state(LAYER_Z);
     made.first = RADII;
-    made.photon_rays = UINT64_MAX - 3;
+    made.shared_rays = UINT64_MAX - 3;
     made.eye_rays = 5;
     made.steering.until = 44;
     for (int h = 0; h < 2; h++) {
@@ -98,7 +98,7 @@ static void what_is_read_is_what_was_written(void **state)
     assert_int_equal(checkpoint_read(quiet(), path, SETTINGS, &read, &is_there), OK);
     assert_true(is_there);
     assert_memory_equal(&read.first, &RADII, sizeof RADII);
-    assert_int_equal(read.photon_rays, UINT64_MAX - 3);
+    assert_int_equal(read.shared_rays, UINT64_MAX - 3);
     assert_int_equal(read.eye_rays, 5);
     assert_int_equal(read.steering.until, 44);
     assert_memory_equal(read.steering.rate, expected.steering.rate, PIXELS * sizeof(float));

@@ -29,7 +29,7 @@ static bool is_above(size_t pixel)
     return pixel < PIXELS / 4;
 }
 
-static void make(Made *made, float above, float below, float caustic)
+static void make(Made *made, float above, float below, float shared)
 {
     RenderOptions options = RENDER_OPTIONS_DEFAULT;
     options.width = options.height = SIDE;
@@ -42,7 +42,7 @@ static void make(Made *made, float above, float below, float caustic)
         made->state.halves[0].good[i] = made->state.halves[1].good[i] = 2;
         made->map.luminance[i] = made->map.value[i] = 1;
         made->map.smooth[i] = made->map.noise[i] = is_above(i) ? above : below;
-        made->map.caustic[i] = caustic;
+        made->map.shared[i] = shared;
     }
 }
 
@@ -53,9 +53,9 @@ static void unmake(Made *made)
     film_done(&made->film);
 }
 
-static void plan(Made *made, double error, double photon_work)
+static void plan(Made *made, double error, double shared_work)
 {
-    SteeringGoal goal = {.error = error, .photon_work = photon_work, .passes_left = INFINITY};
+    SteeringGoal goal = {.error = error, .shared_work = shared_work, .passes_left = INFINITY};
     ErrorFigure figure = error_figure(&made->map);
     steering_plan(&made->state.steering, &made->map, made->state.halves, &figure, 4, &goal);
 }
@@ -98,7 +98,7 @@ static void samples_share_photons_only_while_it_helps(void **state)
     plan(&made, 0, 9.0 * PIXELS);
     assert_true(made.state.steering.rate[0] == 1);
     for (size_t i = 0; i < PIXELS; i++)
-        made.map.caustic[i] = 0;
+        made.map.shared[i] = 0;
     plan(&made, 0, 9.0 * PIXELS);
     assert_true(fabs((double)made.state.steering.rate[0] - 9) < 0.01);
     unmake(&made);
