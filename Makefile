@@ -113,7 +113,7 @@ bench-accuracy: deps ## estimated errors against true ones, for every scene (an 
 	$(Q)$(MAKE) --no-print-directory $(B)/tests/bench/accuracy_bench
 	$(Q)mkdir -p $(B)/truth
 	$(Q)$(B)/tests/bench/accuracy_bench -k $(B)/truth scenes/*.pms
-	$(Q)$(B)/tests/bench/accuracy_bench -k $(B)/truth -e 2 -n 5 $(QUICK:%=scenes/%.pms)
+	$(Q)$(B)/tests/bench/accuracy_bench -k $(B)/truth -w 80 -e 2 -n 5 $(QUICK:%=scenes/%.pms)
 
 fuzz: deps ## fuzz the scene reader for a minute (needs clang with libFuzzer)
 	$(Q)tests/fuzz/run.sh

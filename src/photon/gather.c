@@ -60,6 +60,19 @@ double gather_kernel(GatherKernel kernel, double x)
     return 1;
 }
 
+double gather_blur_variance(GatherKernel kernel)
+{
+    enum { RINGS = 64 };
+    double light = 0, blur = 0;
+    for (int i = 0; i < RINGS; i++) {
+        double x = (i + 0.5) / RINGS, weight = gather_kernel(kernel, x);
+        double half = x < 0.5 ? 2 * gather_kernel(kernel, 2 * x) : 0;
+        light += weight * weight;
+        blur += (weight - half) * (weight - half);
+    }
+    return blur / light;
+}
+
 /* Replace squared distances by kernel weights over pi r^2. */
 static void weigh(FoundPhotons *found, GatherKernel kernel, float radius2)
 {

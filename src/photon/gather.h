@@ -136,6 +136,10 @@ int photon_nearest(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
  * disk, x uniform, is 1, but for KERNEL_GAUSSIAN_JENSEN, whose printed constant loses 46.9 %. */
 double gather_kernel(GatherKernel kernel, double x);
 
+/* Return the variance of an estimate's blur over that of its light, where light is even: of photons
+ * that come as by chance. */
+double gather_blur_variance(GatherKernel kernel);
+
 /* Return the search radius for a map: within it four in five of the map's photons have
  * max_photons around them, so that only the faintest of a caustic is seen as single photons.
  * Scene units; 0 for an empty map.  Deterministic. */

@@ -164,8 +164,10 @@ void error_map_of_halves(const FilmSum halves[2], const Film *film, const SceneS
 
 /* What a pixel with one sample in its middle may be off, squared, over the squares of the second
  * differences across it.  An edge with a step of J between two such samples, anywhere with equal
- * chance, makes each of the two pixels wrong by J^2/24 in the mean square; a slope makes none. */
+ * chance, makes each of the two pixels wrong by J^2/24 in the mean square; a slope makes none.
+ * Noise that is drawn anew for every pixel is in the two differences 12 times. */
 #define BEND_PART (1.0 / 24)
+#define BEND_PART_RANDOM (1.0 / 12)
 
 /* The error squared of n samples spread evenly over a pixel falls as n^-1 where they are noise and
  * as n^-1.5 along an edge. */
@@ -198,31 +200,41 @@ static void film_luminances(const Film *film, float *out)
         out[i] = rgb_luminance(rgb(p[0], p[1], p[2]));
 }
 
-/* How a pixel was sampled: see error_map_of_film. */
 typedef struct Sampling {
+    PixelSampling kind;
     int samples;
-    bool is_spread;
-    double divisor; /* of the spread of samples */
+    double divisor;   /* of the spread of samples */
+    double bend_part; /* of the squares of second differences */
 } Sampling;
 
+static Sampling make_sampling(PixelSampling kind, int samples)
+{
+    bool is_random = kind == SAMPLED_AT_RANDOM;
+    return (Sampling){.kind = kind,
+                      .samples = samples,
+                      .divisor = is_random ? fmax(1, samples - 1) : pow(samples, SPREAD_POWER),
+                      .bend_part = is_random ? BEND_PART_RANDOM : BEND_PART};
+}
+
 /* Square of the error that the samples of a pixel leave. */
-static double sampling_error2(const float *values, const float *clues, Sampling sampling, int x,
-                              int y, const ErrorMap *map)
+static double sampling_error2(const float *values, const float *clues, const Sampling *sampling,
+                              int x, int y, const ErrorMap *map)
 {
     size_t i = (size_t)y * (size_t)map->width + (size_t)x;
     double value = (double)values[i], square = (double)clues[CLUE_SQUARE];
     double spread = square - value * value;
-    if (sampling.is_spread)
-        return (double)clues[CLUE_LENS] / sampling.samples;
-    if (sampling.samples > 1 && spread > SAME_SAMPLES * square)
-        return spread / sampling.divisor;
-    return BEND_PART * bend2(values, x, y, map->width, map->height);
+    if (sampling->kind == SAMPLED_ALL_OVER)
+        return (double)clues[CLUE_LENS] / sampling->samples;
+    if (sampling->samples > 1 && spread > SAME_SAMPLES * square)
+        return spread / sampling->divisor;
+    return sampling->bend_part * bend2(values, x, y, map->width, map->height);
 }
 
-void error_map_of_film(const Film *film, int samples, bool is_spread, const SceneSettings *settings,
-                       ErrorMap *map)
+void error_map_of_film(const Film *film, PixelSampling kind, int samples,
+                       const SceneSettings *settings, ErrorMap *map)
 {
-    const Sampling sampling = {samples, is_spread, pow(samples, SPREAD_POWER)};
+    const Sampling sampling = make_sampling(kind, samples);
+    const double blur_variance = gather_blur_variance(settings->pms.kernel);
     const float *clues = film->image.layers[film->image.layer_count - 1].pixels;
     float *values = map->scratch;
     film_luminances(film, values);
@@ -231,12 +243,13 @@ void error_map_of_film(const Film *film, int samples, bool is_spread, const Scen
             size_t i = (size_t)y * (size_t)map->width + (size_t)x;
             double value = (double)values[i], slope = film_slope(settings, value);
             double noise = (double)clues[CLUE_NOISE], blur = (double)clues[CLUE_BLUR];
-            double error2 = noise * noise + sampling_error2(values, clues, sampling, x, y, map);
+            double error2 = noise * noise + sampling_error2(values, clues, &sampling, x, y, map);
             double error = slope * sqrt(error2);
             map->luminance[i] = map->value[i] = (float)film_linear(settings, value);
             map->smooth[i] = (float)(error * error);
             map->noise[i] = (float)error * NORMAL_PARTS[(5 * x + 3 * y) % 8];
-            map->bias[i] = (float)(4 * (blur * blur - noise * noise) * slope * slope);
+            double bias2 = 4 * (blur * blur - blur_variance * noise * noise);
+            map->bias[i] = (float)(bias2 * slope * slope);
         }
     finish_map(map);
 }

@@ -42,12 +42,20 @@ void error_map_done(ErrorMap *map);
 void error_map_of_halves(const FilmSum halves[2], const Film *film, const SceneSettings *settings,
                          ErrorMap *map);
 
+/* How the samples of a pixel lie: evenly over it, and what they see is sure; or what they see is
+ * drawn at random; or each is the mean of rays all over it, as by focal blur, and knows its error.
+ */
+typedef enum PixelSampling {
+    SAMPLED_EVENLY,
+    SAMPLED_AT_RANDOM,
+    SAMPLED_ALL_OVER
+} PixelSampling;
+
 /* Fill the map for a film with clues of a single pass, in working values.
  *
- * samples    of the pixels that have more than one.
- * is_spread  each is spread over its pixel, as by focal blur. */
-void error_map_of_film(const Film *film, int samples, bool is_spread, const SceneSettings *settings,
-                       ErrorMap *map);
+ * samples  of the pixels that have more than one. */
+void error_map_of_film(const Film *film, PixelSampling kind, int samples,
+                       const SceneSettings *settings, ErrorMap *map);
 
 /* Return the relative standard error of a pixel as those around it tell, without its own samples:
  * for what decides on more of them, else lucky ones would be diluted and unlucky ones kept.

@@ -46,6 +46,12 @@ void pace_fit_photons(Pace *pace, double samples)
     pace->photon_part = fitting < 1 ? fmax(PHOTON_PART_LEAST, fitting) : 1;
 }
 
+double pace_fit_samples(const Pace *pace, double samples, double passes)
+{
+    double room = pace_left(pace) / passes - pace->photon_part * pace->photon_seconds;
+    return fmin(1, fmax(0, room / (samples * pace->sample_seconds)));
+}
+
 double pace_part(const Pace *pace, double samples)
 {
     double part = pace_left(pace) / pace_pass_seconds(pace, samples);

@@ -30,6 +30,10 @@ double pace_left(const Pace *pace);
 /* Choose a part of the photons such that some passes of so many samples fit into the time left. */
 void pace_fit_photons(Pace *pace, double samples);
 
+/* Return the part, at most 1, of so many samples a pass with which `passes` fit into the time
+ * left. */
+double pace_fit_samples(const Pace *pace, double samples, double passes);
+
 /* Return how much of the next pass there is time for, at most 1; 0: none worth its while. */
 double pace_part(const Pace *pace, double samples);
 

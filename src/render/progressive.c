@@ -355,9 +355,18 @@ static Status run_pass(Series *s, double part)
     return OK;
 }
 
-/* A trial tells what a pass takes: so much of one, for so many of the photons. */
+/* A trial tells what a pass takes: so many samples of a pixel, of so many of the photons. */
 #define TRIAL_SAMPLES 0.0625
 #define TRIAL_PHOTONS 0.1
+
+/* Take fewer samples of a pixel than asked for, but one, if else there were no time to plan. */
+static void fit_samples(Series *s)
+{
+    double samples = steering_samples(&s->state.steering), asked = s->options.samples;
+    double part = pace_fit_samples(&s->pace, samples, FIRST_PLAN);
+    if (part < 1)
+        steering_even(&s->state.steering, (float)fmax(1, part * asked));
+}
 
 /* With a limit of time, find out what passes take, and how many photons there can be in each. */
 static Status try_pass(Series *s)
@@ -367,13 +376,15 @@ static Status try_pass(Series *s)
     PassResult result;
     PassRadii radii = s->state.first;
     Stats stats = {.count = {0}};
-    steering_deal(&s->state.steering, 0, TRIAL_SAMPLES, &s->film);
+    steering_deal(&s->state.steering, 0, TRIAL_SAMPLES / s->options.samples, &s->film);
     film_sum_follow(&s->state.halves[0], &s->film);
     TRY(make_pass(s, passes_done(s), TRIAL_PHOTONS, &radii, &stats, &result));
     pass_result_done(&result);
     for (int i = 0; i < PHASE_COUNT; i++)
         s->out->stats.seconds[i] += stats.seconds[i];
     pace_fit_photons(&s->pace, steering_samples(&s->state.steering));
+    if (passes_done(s) == 0)
+        fit_samples(s);
     return OK;
 }
 

@@ -52,7 +52,10 @@ static Status show_film(const Scene *scene, const RenderOptions *options, Film *
     TRY(error_map_init(&errors, film, diag));
     bool is_blurred = plan_has(&out->plan, FEATURE_FOCAL_BLUR);
     int samples = samples_of(options, is_blurred ? scene->camera.blur_samples : 1);
-    error_map_of_film(film, samples, is_blurred, &scene->settings, &errors);
+    PixelSampling sampling = is_blurred                            ? SAMPLED_ALL_OVER
+                             : plan_has(&out->plan, FEATURE_PATHS) ? SAMPLED_AT_RANDOM
+                                                                   : SAMPLED_EVENLY;
+    error_map_of_film(film, sampling, samples, &scene->settings, &errors);
     film_linearize(&film->image, &scene->settings);
     out->error = error_figure(&errors);
     Status status = film_show_errors(film, diag);

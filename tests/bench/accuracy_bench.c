@@ -1,7 +1,7 @@
 /* Estimated errors against true ones: of pictures of one pass and of several, with a quarter, all
  * and four times the photons; and of renders that are asked for an error.
  *
- * accuracy_bench [-r SECONDS] [-e PERCENT] [-n SEEDS] [-k FOLDER] SCENE...
+ * accuracy_bench [-r SECONDS] [-e PERCENT] [-n SEEDS] [-w WIDTH] [-k FOLDER] SCENE...
  *
  * The truth is a long progressive render of the scene with random numbers of its own, of SECONDS.
  * What that is wrong itself, by its own estimate, is taken off the square of the difference; where
@@ -20,7 +20,12 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { WIDTH = 160, HEIGHT = 120, PIXELS = WIDTH * HEIGHT, TRUTH_SEED = 77, CASES_MAX = 4096 };
+enum {
+    WIDTH_MOST = 640,
+    PIXELS_MOST = WIDTH_MOST * WIDTH_MOST * 3 / 4,
+    TRUTH_SEED = 77,
+    CASES_MAX = 4096
+};
 
 /* The error of the reference, at most, over that which it is to measure. */
 #define REFERENCE_PART 0.5
@@ -32,6 +37,7 @@ typedef struct Case {
 typedef struct Bench {
     double seconds, error; /* of the reference; wanted, 0: none */
     int seeds;
+    int width, height;  /* of pictures, pixels */
     const char *folder; /* of kept references; NULL: none */
     Diag diag;
     Case cases[CASES_MAX];
@@ -44,11 +50,16 @@ static void say(void *ctx, const char *text)
     fputs(text, stderr);
 }
 
-static RenderOptions base_options(void)
+static size_t pixels_of(const Bench *bench)
+{
+    return (size_t)bench->width * (size_t)bench->height;
+}
+
+static RenderOptions base_options(const Bench *bench)
 {
     RenderOptions options = RENDER_OPTIONS_DEFAULT;
-    options.width = WIDTH;
-    options.height = HEIGHT;
+    options.width = bench->width;
+    options.height = bench->height;
     options.threads = work_thread_count();
     return options;
 }
@@ -60,28 +71,28 @@ static void render(Bench *bench, const Scene *scene, const RenderOptions *option
         exit(3);
 }
 
-static void colours_of(const RenderResult *result, float *out)
+static void colours_of(const Bench *bench, const RenderResult *result, float *out)
 {
-    for (size_t i = 0; i < PIXELS; i++)
+    for (size_t i = 0; i < pixels_of(bench); i++)
         memcpy(out + 3 * i, result->image.layers[0].pixels + 4 * i, 3 * sizeof *out);
 }
 
 /* --- a case --------------------------------------------------------------------------------- */
 
 typedef struct Truth {
-    float colours[3 * PIXELS];
+    float colours[3 * PIXELS_MOST];
     double error;
 } Truth;
 
 static void make_truth(Bench *bench, const Scene *scene, Truth *out)
 {
     RenderResult result;
-    RenderOptions options = base_options();
+    RenderOptions options = base_options(bench);
     options.seed = TRUTH_SEED;
     options.plan.is_progressive = true;
     options.progressive.seconds = bench->seconds;
     render(bench, scene, &options, &result);
-    colours_of(&result, out->colours);
+    colours_of(bench, &result, out->colours);
     out->error = result.error.whole;
     render_result_done(&result);
 }
@@ -92,7 +103,7 @@ static bool truth_file(const Bench *bench, const char *scene, char out[static 51
     if (!bench->folder)
         return false;
     int start = snprintf(out, 512, "%s/", bench->folder);
-    snprintf(out + start, 512 - (size_t)start, "%s.%gs", scene, bench->seconds);
+    snprintf(out + start, 512 - (size_t)start, "%s.%d.%gs", scene, bench->width, bench->seconds);
     for (char *c = out + start; *c; c++)
         if (*c == '/')
             *c = '-';
@@ -121,13 +132,13 @@ static void find_truth(Bench *bench, const Scene *scene, Truth *out)
 static void try_case(Bench *bench, const Scene *scene, const RenderOptions *options,
                      const Truth *truth, const char *name)
 {
-    static float colours[3 * PIXELS];
+    static float colours[3 * PIXELS_MOST];
     RenderResult result;
     double apart, started = clock_wall();
     render(bench, scene, options, &result);
     double seconds = clock_wall() - started;
-    colours_of(&result, colours);
-    if (!error_between(colours, truth->colours, PIXELS, &apart))
+    colours_of(bench, &result, colours);
+    if (!error_between(colours, truth->colours, pixels_of(bench), &apart))
         exit(3);
     double own = sqrt(fmax(0, apart * apart - truth->error * truth->error));
     const ErrorFigure *error = &result.error;
@@ -162,7 +173,7 @@ static void try_photons(Bench *bench, const Scene *scene, const Truth *truth)
     static const double factors[] = {0.25, 1, 4};
     for (int i = 0; i < 3; i++) {
         Scene scaled = scaled_photons(scene, factors[i]);
-        RenderOptions options = base_options();
+        RenderOptions options = base_options(bench);
         char name[32];
         options.aa = AA_UNIFORM;
         options.samples = 4;
@@ -179,7 +190,7 @@ static void try_photons(Bench *bench, const Scene *scene, const Truth *truth)
 static void try_seeds(Bench *bench, const Scene *scene, const Truth *truth)
 {
     for (int seed = 0; seed < bench->seeds; seed++) {
-        RenderOptions options = base_options();
+        RenderOptions options = base_options(bench);
         char name[32];
         options.seed = (uint64_t)seed;
         options.plan.is_progressive = true;
@@ -195,8 +206,8 @@ static void try_scene(Bench *bench, const char *path)
     static const char *const folders[] = {"stdlib"};
     SdlOptions sdl = {.library_paths = folders,
                       .library_path_count = 1,
-                      .width = WIDTH,
-                      .height = HEIGHT,
+                      .width = bench->width,
+                      .height = bench->height,
                       .threads = work_thread_count()};
     Scene *scene;
     if (sdl_load(&bench->diag, path, &sdl, &scene) != OK)
@@ -240,23 +251,28 @@ static void print_summary(Bench *bench)
 
 int main(int argc, char **argv)
 {
-    static Bench bench = {.seconds = 60, .seeds = 3};
+    static Bench bench = {.seconds = 60, .seeds = 3, .width = 160};
     int letter;
-    while ((letter = getopt(argc, argv, "r:e:n:k:")) != -1) {
+    while ((letter = getopt(argc, argv, "r:e:n:w:k:")) != -1) {
         if (letter == 'r')
             bench.seconds = atof(optarg);
         else if (letter == 'e')
             bench.error = atof(optarg) / 100;
         else if (letter == 'n')
             bench.seeds = atoi(optarg);
+        else if (letter == 'w')
+            bench.width = atoi(optarg);
         else if (letter == 'k')
             bench.folder = optarg;
         else
             return 2;
     }
+    if (bench.width < 4 || bench.width > WIDTH_MOST)
+        return 2;
+    bench.height = bench.width * 3 / 4;
     diag_init(&bench.diag, say, NULL);
-    printf("errors that 95 %% of the pixels are within, in %% of their luminance, %dx%d\n\n", WIDTH,
-           HEIGHT);
+    printf("errors that 95 %% of the pixels are within, in %% of their luminance, %dx%d\n\n",
+           bench.width, bench.height);
     printf("%-28s %-16s %8s %8s %8s %7s %8s %7s\n", "scene", "photons, way", "estimate", "90 %",
            "truth", "ratio", "within", "seconds");
     for (int i = optind; i < argc; i++)

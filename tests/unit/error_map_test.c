@@ -213,10 +213,37 @@ static void edges_without_antialiasing_are_seen(void **state)
         set_pixel(&made.film, i, edge > 0 ? 1 : 0, 0);
         truth2 += pow(part - (edge > 0), 2);
     }
-    error_map_of_film(&made.film, 1, false, &LINEAR, &made.map);
+    error_map_of_film(&made.film, SAMPLED_EVENLY, 1, &LINEAR, &made.map);
     for (int i = 0; i < PIXELS; i++)
         estimate2 += (double)made.map.smooth[i] * (double)made.map.smooth[i];
     assert_true(estimate2 / truth2 > 0.7 && estimate2 / truth2 < 1.5);
+    unmake(&made);
+}
+
+/* Pictures of noise alone, one sample or four a pixel: the estimate is the standard error. */
+static void chance_is_known_from_samples_and_neighbours(void **state)
+{
+    (void)state;
+    Made made;
+    make(&made);
+    for (int samples = 1; samples <= 4; samples += 3) {
+        double mean2 = 0, noise = 0.1;
+        for (int i = 0; i < PIXELS; i++) {
+            Rng rng = rng_at(3, (uint32_t)samples, (uint64_t)i);
+            double sum = 0, sum2 = 0;
+            for (int k = 0; k < samples; k++) {
+                double value = 1 + noise * normal(&rng);
+                sum += value / samples;
+                sum2 += value * value / samples;
+            }
+            set_pixel(&made.film, i, (float)sum, 0);
+            made.film.image.layers[1].pixels[CLUE_CHANNELS * i + CLUE_SQUARE] = (float)sum2;
+        }
+        error_map_of_film(&made.film, SAMPLED_AT_RANDOM, samples, &LINEAR, &made.map);
+        for (int i = 0; i < PIXELS; i++)
+            mean2 += (double)made.map.smooth[i] * (double)made.map.smooth[i] / PIXELS;
+        assert_true(fabs(mean2 * samples / (noise * noise) - 1) < 0.06);
+    }
     unmake(&made);
 }
 
@@ -228,7 +255,7 @@ static void slopes_are_no_error(void **state)
     make(&made);
     for (int i = 0; i < PIXELS; i++)
         set_pixel(&made.film, i, (float)(i % SIDE) / SIDE, 0);
-    error_map_of_film(&made.film, 1, false, &LINEAR, &made.map);
+    error_map_of_film(&made.film, SAMPLED_EVENLY, 1, &LINEAR, &made.map);
     assert_true(error_figure(&made.map).whole < 1e-4);
     unmake(&made);
 }
@@ -245,6 +272,7 @@ int main(void)
         cmocka_unit_test(rare_light_is_no_accuracy),
         cmocka_unit_test(errors_are_of_linear_light),
         cmocka_unit_test(edges_without_antialiasing_are_seen),
+        cmocka_unit_test(chance_is_known_from_samples_and_neighbours),
         cmocka_unit_test(slopes_are_no_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

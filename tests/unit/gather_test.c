@@ -243,6 +243,37 @@ static PhotonMap *uniform_field(uint64_t seed)
     return map_of(photons, FIELD_PHOTONS, v3(0, 0, 0.25));
 }
 
+/* Of even light a blur is by chance alone, and varies as it is said to for its noise. */
+static void blur_of_even_light_is_noise(void **state)
+{
+    (void)state;
+    assert_true(fabs(gather_blur_variance(KERNEL_FLAT) - 1) < 1e-12);
+    assert_true(fabs(gather_blur_variance(KERNEL_EPANECHNIKOV) - 0.5) < 1e-3);
+    GatherScratch *scratch = gather_scratch_new();
+    PhotonMap *map = uniform_field(1);
+    for (int kernel = 0; kernel <= KERNEL_GAUSSIAN; kernel++) {
+        double blur2 = 0, noise2 = 0;
+        GatherLimits limits = {.max_photons = 50,
+                               .max_radius = INFINITY,
+                               .kernel = (GatherKernel)kernel,
+                               .normal_cosine = 0.9,
+                               .has_error = true};
+        for (int i = 0; i < FIELD_QUERIES * FIELD_QUERIES; i++) {
+            V3 q = v3(0.1 + 0.8 * (i % FIELD_QUERIES) / FIELD_QUERIES,
+                      0.1 + 0.8 * (i / FIELD_QUERIES) / FIELD_QUERIES, 0.25);
+            LightEstimate found;
+            photon_gather_estimate(map, q, v3(0, 0, 1), &limits, scratch, &found);
+            blur2 += (double)found.blur.g * (double)found.blur.g;
+            noise2 += (double)found.noise.g * (double)found.noise.g;
+        }
+        double expected = gather_blur_variance((GatherKernel)kernel);
+        print_message("# kernel %d: %.3f of %.3f\n", kernel, blur2 / noise2, expected);
+        assert_true(fabs(blur2 / noise2 / expected - 1) < 0.15); /* 4 standard errors */
+    }
+    photon_map_free(map);
+    gather_scratch_free(scratch);
+}
+
 typedef struct Setup {
     GatherKernel kernel;
     GatherShape shape;
@@ -551,6 +582,7 @@ int main(void)
         cmocka_unit_test(many_equally_far),
         cmocka_unit_test(history_makes_no_difference),
         cmocka_unit_test(kernels_keep_the_light),
+        cmocka_unit_test(blur_of_even_light_is_noise),
         cmocka_unit_test(every_estimate_is_unbiased),
         cmocka_unit_test(curvature_makes_no_bias),
         cmocka_unit_test(thin_wall_does_not_leak),

@@ -195,6 +195,21 @@ static void photons_are_cut_until_some_passes_fit(void **state)
     assert_true(pace.photon_part == 1);
 }
 
+static void samples_are_cut_until_some_passes_fit(void **state)
+{
+    (void)state;
+    Pace pace = {.seconds = 40,
+                 .started = clock_wall(),
+                 .photon_part = 0.5,
+                 .photon_seconds = 4,
+                 .sample_seconds = 0.5};
+    assert_true(pace_fit_samples(&pace, 15, 4) == 1); /* 2 of photons, 8 of samples */
+    assert_true(fabs(pace_fit_samples(&pace, 64, 4) - 0.25) < 0.01);
+    assert_true(pace_fit_samples(&pace, 64, 40) == 0);
+    pace.seconds = 0; /* no limit */
+    assert_true(pace_fit_samples(&pace, 1e9, 4) == 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -206,6 +221,7 @@ int main(void)
         cmocka_unit_test(parts_of_samples_are_dealt_out_evenly),
         cmocka_unit_test(the_last_pass_is_as_much_as_there_is_time_for),
         cmocka_unit_test(photons_are_cut_until_some_passes_fit),
+        cmocka_unit_test(samples_are_cut_until_some_passes_fit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
