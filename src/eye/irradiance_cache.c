@@ -17,6 +17,9 @@ enum { LEVEL_OF_1 = 40 };
  * does not. */
 #define FRONT_SLACK 0.05
 
+/* The most a record's radius may be with has_nearest, over the distance of what is nearest. */
+#define NEAREST_REACH 2
+
 /* A record in a cell. */
 typedef struct Entry {
     int64_t cell[3];
@@ -48,7 +51,8 @@ void irradiance_record_init(IrradianceRecord *record, V3 p, V3 n, const Gathered
                             bool has_nearest, double least, double most)
 {
     const float channels[3] = {light->irradiance.r, light->irradiance.g, light->irradiance.b};
-    double radius = has_nearest ? fmin(light->distance, light->nearest) : light->distance;
+    double radius =
+        has_nearest ? fmin(light->distance, NEAREST_REACH * light->nearest) : light->distance;
     for (int c = 0; c < 3; c++) {
         double change = vector_length(light->shift[c]);
         if (change * radius > (double)channels[c])

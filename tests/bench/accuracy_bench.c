@@ -5,7 +5,7 @@
  *
  * The truth is a long progressive render of the scene with random numbers of its own, of SECONDS.
  * What that is wrong itself, by its own estimate, is taken off the square of the difference; where
- * it is more than half of the difference, the case tells nothing and is not counted.  With -k it is
+ * it is more than 0.6 of the difference, the case tells nothing and is not counted.  With -k it is
  * kept in a folder and taken from there the next time.
  * SPDX-License-Identifier: Apache-2.0 */
 #include "base/mem.h"
@@ -28,7 +28,7 @@ enum {
 };
 
 /* The error of the reference, at most, over that which it is to measure. */
-#define REFERENCE_PART 0.5
+#define REFERENCE_PART 0.6
 
 typedef struct Case {
     double estimate, bound, truth;
