@@ -30,7 +30,7 @@ enum { STACK_MAX = 80, CHUNK_BLOCKS = 64 };
  * ray meets so many times those of the ball. */
 #define TUBE_PART 1.5
 
-/* Where the scene ends for photons, in its radii: about as walk_int.h's NEAR_RADII has it. */
+/* Where the scene ends for photons, in its radii. */
 #define FAR_RADII 2
 
 /* Rounding of where a ray enters and leaves a box. */
