@@ -177,29 +177,16 @@ const MediaCell *air_cell_at(const MediaProfile *profile, double t)
     return &profile->cells[low];
 }
 
-/* Where a part of a ray begins: all of them show the same share of evenly lit media.  Asked for one
- * channel, the clearest, places follow each other. */
-static double part_begin(const MediaProfile *profile, int part)
-{
-    Rgb depth = profile->depth, clearest = rgb(0, 0, 1), unused;
-    double t, end = profile->cells[profile->count - 1].end;
-    if (depth.r <= depth.g && depth.r <= depth.b)
-        clearest = rgb(1, 0, 0);
-    else if (depth.g <= depth.b)
-        clearest = rgb(0, 1, 0);
-    if (part <= 0 || part >= RAY_PARTS)
-        return part <= 0 ? 0 : end;
-    return media_place(profile, clearest, (double)part / RAY_PARTS, &t, &unused) ? t : 0;
-}
-
 /* The photons of a part of a ray drawn at random, for all of it. */
 static void some_photons(EyeThread *eye, const MediaHere *here, const MediaProfile *profile,
                          const Ray *ray, Rgb light[PART_COUNT])
 {
     Rgb found[PART_COUNT] = {RGB_BLACK};
+    double end = profile->cells[profile->count - 1].end;
+    end = fmin(end, scene_end(eye->trace.tracer, ray));
     int part = (int)(rng_double(&eye->rng) * RAY_PARTS);
     const AirEnds none = {.from = NULL};
-    media_photons(eye, here, profile, ray, part_begin(profile, part), part_begin(profile, part + 1),
+    media_photons(eye, here, profile, ray, end * part / RAY_PARTS, end * (part + 1) / RAY_PARTS,
                   &none, found);
     for (int i = 0; i < PART_COUNT; i++)
         light[i] = rgb_scale(found[i], RAY_PARTS);

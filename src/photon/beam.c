@@ -17,8 +17,9 @@
  * of the target can reach into them. */
 #define NEIGHBOUR_PART 0.25f
 
-/* 1 - z is as the square of the radius on the disk. */
-V3 cone_direction(V2 square, double rim)
+/* Direction at a point of the square, within a cone around +z whose rim is at 1 - cosine =
+ * `rim`.  Uniform in solid angle: 1 - z is as the square of the radius on the disk. */
+static V3 cone_direction(V2 square, double rim)
 {
     V2 p = warp_disk(square);
     double z = 1 - rim * (p.u * p.u + p.v * p.v);
@@ -26,18 +27,14 @@ V3 cone_direction(V2 square, double rim)
     return v3(k * p.u, k * p.v, z);
 }
 
-double ball_rim(double radius, double distance)
+/* 1 - cosine of the cone that holds a ball seen from a distance; 2 from inside it.  Exact for
+ * small balls. */
+static double ball_rim(double radius, double distance)
 {
     if (!(distance > radius))
         return 2;
     double sine = radius / distance, cosine = sqrt((1 - sine) * (1 + sine));
     return sine * sine / (1 + cosine);
-}
-
-bool meets_ball(V3 to_center, V3 d, double radius)
-{
-    double along = v3_dot(to_center, d), aside2 = v3_len2(v3_mad(to_center, -along, d));
-    return v3_len2(to_center) < radius * radius || (along > 0 && aside2 < radius * radius);
 }
 
 static double spot_rim(const Light *light)
@@ -78,18 +75,14 @@ static bool cone_ray(const Beam *beam, V2 square, BeamRay *out)
     V3 to_ball = v3_sub(beam->center, out->location);
     double distance = v3_len(to_ball), rim = ball_rim(beam->radius, distance);
     V3 axis = distance > 0 ? v3_scale(to_ball, 1 / distance) : v3(0, 1, 0);
-    bool is_narrow = light->kind == LIGHT_SPOT && spot_rim(light) < rim;
-    bool is_all = beam->around > 0;
-    if (light->kind == LIGHT_SPOT && (is_narrow || is_all)) {
+    if (light->kind == LIGHT_SPOT && spot_rim(light) < rim) {
         rim = spot_rim(light);
         axis = light->direction;
-    } else if (is_all) {
-        rim = 2;
     }
     out->ray.o = out->location;
     out->ray.d = warp_to_frame(cone_direction(square, rim), axis);
     out->measure = 2 * PMS_PI * rim;
-    return !is_all || !(is_narrow || meets_ball(to_ball, out->ray.d, beam->radius));
+    return true;
 }
 
 /* Parallel rays start in the plane through the light: what is behind it is not lit by them. */
@@ -97,8 +90,8 @@ static bool disk_ray(const Beam *beam, V2 square, BeamRay *out)
 {
     const Light *light = beam->light;
     V3 d = light->direction, to_ball = v3_sub(beam->center, light->location), s, t;
-    double along = v3_dot(to_ball, d), radius = beam->radius + beam->around;
-    V3 middle = v3_mad(to_ball, -along, d), off = middle;
+    double along = v3_dot(to_ball, d), radius = beam->radius;
+    V3 middle = v3_mad(to_ball, -along, d);
     if (light->kind == LIGHT_CYLINDER && light->falloff < radius) {
         radius = light->falloff;
         middle = v3(0, 0, 0);
@@ -109,10 +102,6 @@ static bool disk_ray(const Beam *beam, V2 square, BeamRay *out)
     out->ray.o = v3_add(light->location, aside);
     out->ray.d = d;
     out->measure = PMS_PI * radius * radius;
-    if (beam->around > 0) {
-        bool is_narrow = light->kind == LIGHT_CYLINDER && light->falloff < beam->radius;
-        return !is_narrow && !(v3_dist(aside, off) < beam->radius);
-    }
     return along + beam->radius > 0;
 }
 
@@ -135,8 +124,6 @@ bool beam_can_shine(const Beam *beam)
         return true;
     V3 to_ball = v3_sub(beam->center, light->location);
     double distance = v3_len(to_ball);
-    if (beam->around > 0)
-        return light_is_parallel(light) || beam->is_spread || distance > beam->radius;
     if (light->kind == LIGHT_CYLINDER) {
         double along = v3_dot(to_ball, light->direction);
         double aside = v3_len(v3_mad(to_ball, -along, light->direction));

@@ -23,8 +23,6 @@ typedef struct Beam {
     const Object *target; /* NULL: the whole scene */
     V3 center;            /* of a ball around the target, scene units */
     double radius;
-    double around;         /* above 0: it is all of the light but what meets the ball, from the
-                              ball's rim up to here if it is parallel; scene units */
     double reach;          /* a target met further from the centre does not count */
     double spacing_factor; /* the target's */
     double stores;         /* photons expected to be stored for two that are sent */
@@ -46,18 +44,6 @@ typedef struct BeamRay {
     double measure; /* solid angle, or area across a parallel beam, that the square stands for
                        at this place, times the inverse of the density */
 } BeamRay;
-
-/* Return 1 - cosine of the cone that holds a ball seen from a distance; 2 from inside it.  Exact
- * for small balls. */
-double ball_rim(double radius, double distance);
-
-/* Return true if a ray meets a ball around a place `to_center` from its begin; from inside all
- * do. */
-bool meets_ball(V3 to_center, V3 d, double radius);
-
-/* Return the direction at a point of the square, uniform in solid angle within a cone around +z
- * whose rim is at 1 - cosine = `rim`. */
-V3 cone_direction(V2 square, double rim);
 
 /* Make the ray at a point of the square.  `area` picks the place on an area light.
  * Returns false where the light does not shine. */

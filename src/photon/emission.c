@@ -8,7 +8,6 @@
 
 #include "base/mem.h"
 #include "base/work.h"
-#include "trace/media_along.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -200,37 +199,6 @@ static Status add_glow(Emission *emission, size_t *capacity)
     return is_good ? OK : diag_no_memory(emission->diag, "photon beams");
 }
 
-/* Parallel light beside the scene counts up to where it is so many mean free ways off. */
-#define AROUND_WAYS 4
-
-/* Where the atmosphere scatters, light that misses the scene lights it, too. */
-static bool add_around_beam(Emission *emission, size_t *capacity, Beam beam, bool is_beside)
-{
-    const WalkRules *rules = &emission->rules;
-    MediaHere here;
-    MediaPoint point;
-    media_of_air(emission->tracer, &here);
-    media_at(&here, rules->center, &point);
-    double x = (double)rgb_grey(point.extinction);
-    beam.around = x > 0 ? AROUND_WAYS / x : REACH_RADII_PARALLEL * rules->radius;
-    beam.radius = is_beside ? beam.radius : 0;
-    return add_beam(emission, capacity, &beam);
-}
-
-static bool add_scene_beams(Emission *emission, size_t *capacity, Beam beam)
-{
-    const WalkRules *rules = &emission->rules;
-    beam.center = rules->center;
-    beam.radius = rules->radius;
-    if (isfinite(rules->reach))
-        beam.radius *= light_is_parallel(beam.light) ? REACH_RADII_PARALLEL : REACH_RADII;
-    int before = emission->beam_count;
-    bool is_good = add_beam(emission, capacity, &beam);
-    if (!is_good || !rules->has_air)
-        return is_good;
-    return add_around_beam(emission, capacity, beam, emission->beam_count > before);
-}
-
 static Status make_beams(Emission *emission)
 {
     const Scene *scene = tracer_scene(emission->tracer);
@@ -243,8 +211,16 @@ static Status make_beams(Emission *emission)
             continue;
         beam.is_spread =
             light->has_area_photons && plan_light_has_area(tracer_plan(emission->tracer), light);
-        is_good = map_is_aimed(emission->rules.map) ? add_target_beams(emission, &capacity, beam)
-                                                    : add_scene_beams(emission, &capacity, beam);
+        if (map_is_aimed(emission->rules.map)) {
+            is_good = add_target_beams(emission, &capacity, beam);
+        } else {
+            const WalkRules *rules = &emission->rules;
+            beam.center = rules->center;
+            beam.radius = rules->radius;
+            if (isfinite(rules->reach))
+                beam.radius *= light_is_parallel(beam.light) ? REACH_RADII_PARALLEL : REACH_RADII;
+            is_good = add_beam(emission, &capacity, &beam);
+        }
     }
     if (!is_good)
         return diag_no_memory(emission->diag, "photon beams");
@@ -432,14 +408,6 @@ static Bound indirect_part(const Tracer *tracer, bool *is_endless)
     return objects;
 }
 
-static bool air_scatters(const Atmosphere *air)
-{
-    for (int i = 0; i < air->media_count; i++)
-        if (!rgb_is_black(air->media[i]->scattering))
-            return true;
-    return false;
-}
-
 static void set_rules(Emission *emission, MapKind map)
 {
     const Scene *scene = tracer_scene(emission->tracer);
@@ -465,8 +433,6 @@ static void set_rules(Emission *emission, MapKind map)
                     .brightness = (float)settings->radiosity.brightness,
                     .inside = emission->inside,
                     .has_media = plan_has(tracer_plan(emission->tracer), FEATURE_MEDIA),
-                    .has_air = plan_has(tracer_plan(emission->tracer), FEATURE_MEDIA) &&
-                               !map_is_aimed(map) && air_scatters(&scene->atmosphere),
                     .keeps_light = emission->options->is_full};
     if (settings->radiosity.recursion_limit > 0) /* the eye's own look, or gather rays, is one */
         emission->rules.max_diffuse = settings->radiosity.recursion_limit - 1;

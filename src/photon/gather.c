@@ -222,8 +222,8 @@ int photon_nearest(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
 }
 
 /* Squared radii around a spread of the map's photons. */
-static size_t sample_radii(const PhotonMap *map, int max_photons, double near,
-                           GatherScratch *scratch, double *radii2)
+static size_t sample_radii(const PhotonMap *map, int max_photons, GatherScratch *scratch,
+                           double *radii2)
 {
     size_t count = photon_map_count(map), samples = count / RADIUS_SAMPLES_PART;
     samples = samples < RADIUS_SAMPLES_MIN ? RADIUS_SAMPLES_MIN : samples;
@@ -240,8 +240,7 @@ static size_t sample_radii(const PhotonMap *map, int max_photons, double near,
         const uint32_t *index;
         double radius2;
         photon_nearest(map, p, v3(0, 0, 1), &limits, scratch, &index, &radius2);
-        double stretch = photon_map_stretch(map, p, near);
-        radii2[used] = radius2 / (stretch * stretch);
+        radii2[used] = radius2;
         used += radius2 > 0 && isfinite(radius2);
     }
     return used;
@@ -253,17 +252,7 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-double photon_map_stretch(const PhotonMap *map, V3 p, double near)
-{
-    return fmax(1, v3_dist(p, map->center) / near);
-}
-
 double photon_map_radius(const PhotonMap *map, int max_photons)
-{
-    return photon_map_radius_near(map, max_photons, INFINITY);
-}
-
-double photon_map_radius_near(const PhotonMap *map, int max_photons, double near)
 {
     double radii2[RADIUS_SAMPLES_MAX];
     GatherScratch *scratch = gather_scratch_new();
@@ -271,7 +260,7 @@ double photon_map_radius_near(const PhotonMap *map, int max_photons, double near
         gather_scratch_free(scratch);
         return 0;
     }
-    size_t used = sample_radii(map, max_photons, near, scratch, radii2);
+    size_t used = sample_radii(map, max_photons, scratch, radii2);
     gather_scratch_free(scratch);
     if (used == 0)
         return 0;

@@ -145,11 +145,4 @@ double gather_blur_variance(GatherKernel kernel);
  * Scene units; 0 for an empty map.  Deterministic. */
 double photon_map_radius(const PhotonMap *map, int max_photons);
 
-/* The same of radii that grow in proportion to the distance from the map's centre, beyond `near`.
- */
-double photon_map_radius_near(const PhotonMap *map, int max_photons, double near);
-
-/* Return how much larger they are at p. */
-double photon_map_stretch(const PhotonMap *map, V3 p, double near);
-
 #endif

@@ -30,9 +30,6 @@ enum { STACK_MAX = 80, CHUNK_BLOCKS = 64 };
  * ray meets so many times those of the ball. */
 #define TUBE_PART 1.5
 
-/* Where the scene ends for photons, in its radii. */
-#define FAR_RADII 2
-
 /* Rounding of where a ray enters and leaves a box. */
 #define BOX_SLACK 0x1p-20f
 
@@ -62,13 +59,6 @@ typedef struct IndexWork {
     double radius;      /* 0: from the density */
     BlockLight *lights; /* per block; NULL: all balls have one radius */
 } IndexWork;
-
-/* Photons further than this from the middle are far from the scene, and the further the sparser. */
-static double near_radius(const Tracer *tracer)
-{
-    Bound near = bound_add(tracer_bound(tracer), tracer_scene(tracer)->camera.location);
-    return FAR_RADII * bound_radius(near);
-}
 
 static V3 block_center(const PhotonBlock *block)
 {
@@ -138,10 +128,9 @@ static void find_radii(void *ctx, size_t chunk, int thread)
     for (uint32_t i = first; i < end && i < map->block_count; i++) {
         const PhotonBlock *block = &map->blocks[i];
         V3 p = v3_add(map->center, block_center(block));
-        double radius = work->lights
-                            ? radius_around(map, p, work->nearest, work->scratch[thread])
-                            : work->radius * photon_map_stretch(map, p, near_radius(work->tracer));
-        work->index->radius[i] = (float)radius;
+        work->index->radius[i] =
+            work->lights ? (float)radius_around(map, p, work->nearest, work->scratch[thread])
+                         : (float)work->radius;
         if (work->lights)
             work->lights[i] = block_light(work->tracer, map, block);
     }
@@ -250,9 +239,9 @@ void volume_index_free(VolumeIndex *index)
     mem_free(index);
 }
 
-double volume_radius(const Tracer *tracer, const PhotonMap *map, int nearest)
+double volume_radius(const PhotonMap *map, int nearest)
 {
-    return photon_map_radius_near(map, nearest, near_radius(tracer));
+    return photon_map_radius(map, nearest);
 }
 
 /* --- asking ------------------------------------------------------------------------------- */

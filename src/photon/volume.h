@@ -18,16 +18,15 @@ typedef struct VolumeIndex VolumeIndex;
  *
  * tracer   of the scene, for its media.
  * nearest  photons in the ball around each.
- * radius   of all balls, scene units, but that those far from the scene are as much larger as they
- *          are further; 0: from the density.
+ * radius   of all balls, scene units; 0: from the density.
  *
  * ERR_MEMORY, ERR_INTERRUPTED or OK.  Free with volume_index_free. */
 Status volume_index_new(const Tracer *tracer, const PhotonMap *map, int nearest, double radius,
                         int threads, Diag *diag, VolumeIndex **out);
 void volume_index_free(VolumeIndex *index);
 
-/* Return the radius, as volume_index_new takes it, that fits the middle density of a map, or 0. */
-double volume_radius(const Tracer *tracer, const PhotonMap *map, int nearest);
+/* Return the radius that fits the middle density of a map, or 0; scene units. */
+double volume_radius(const PhotonMap *map, int nearest);
 
 /* The surfaces that a ray comes from and goes to: unit normals, of either sign; 0: none. */
 typedef struct VolumeEnds {

@@ -5,10 +5,6 @@
 /* Surfaces one path may pass: straight ones do not count as levels. */
 enum { PATH_SURFACES_MAX = 10000 };
 
-/* Far from the scene light may wander about for ever: of the photons that are scattered there n
- * times this often, one in n goes on, for all of them. */
-enum { FAR_TURNS = 2 };
-
 static void begin(Walk *walk, TraceThread *thread, const WalkRules *rules, const Beam *beam,
                   const BeamRay *start, Rng *rng)
 {
@@ -25,7 +21,7 @@ static void begin(Walk *walk, TraceThread *thread, const WalkRules *rules, const
     walk->weight = RGB_WHITE;
     walk->lost = walk->flux = RGB_BLACK;
     walk->flux_length = -1;
-    walk->level = walk->diffuse = walk->far = 0;
+    walk->level = walk->diffuse = 0;
     walk->is_aimed = beam->target == NULL;
     walk->is_settled = walk->is_specular = walk->is_diffuse = walk->is_straight = false;
     walk->has_chosen = walk->is_scout = false;
@@ -45,14 +41,6 @@ static bool is_target(const Walk *walk, const Hit *hit)
            (isinf(beam->reach) || v3_dist(hit->point.p, beam->center) <= beam->reach);
 }
 
-/* Let a photon that was scattered far from the scene count as often as it stands for others. */
-static void turn_far(Walk *walk, double boost)
-{
-    double chance = walk->far++ < FAR_TURNS ? 1 : 1 - 1.0 / walk->far;
-    bool goes_on = chance == 1 || rng_double(walk->rng) < chance;
-    walk->flux = rgb_scale(walk->flux, goes_on ? (float)(boost / chance) : 0);
-}
-
 /* Cross the media up to the next surface; returns true when the photon was scattered on the way.
  * out is NULL when nothing is to be stored. */
 static bool cross_media(Walk *walk, double length, PhotonList *out, WalkResult *result)
@@ -65,8 +53,8 @@ static bool cross_media(Walk *walk, double length, PhotonList *out, WalkResult *
     if (!media_leg(walk->thread, walk->rules, &walk->ray, length, &walk->inside, may_stop,
                    !map_is_aimed(map), walk->weight, walk->rng, &leg))
         return false;
-    for (int i = 0; i < leg.stop_count; i++)
-        walk_keep_stop(walk, &leg.stops[i], out, result);
+    if (leg.has_stop)
+        walk_keep_stop(walk, &leg, out, result);
     walk_weaken(walk, leg.weight);
     if (!leg.is_scattered)
         return false;
@@ -76,8 +64,6 @@ static bool cross_media(Walk *walk, double length, PhotonList *out, WalkResult *
     walk->is_diffuse = true;
     walk->is_straight = false;
     walk->is_aimed = true;
-    if (leg.is_far && !walk->is_scout)
-        turn_far(walk, leg.boost);
     if (walk->level < walk->rules->max_level)
         walk->level = 0;
     walk->ray = (Ray){ray_at(&walk->ray, leg.t), leg.d, 0, INFINITY};
@@ -120,8 +106,7 @@ static Step advance(Walk *walk, Hit *hit, PhotonList *out, WalkResult *result)
 static bool is_over_limit(const Walk *walk)
 {
     return walk->level >= walk->rules->max_level || walk->diffuse > walk_most_diffuse(walk) ||
-           !(rgb_max(walk->weight) >= walk->rules->adc_bailout) ||
-           (walk->is_diffuse && rgb_is_black(walk->flux));
+           !(rgb_max(walk->weight) >= walk->rules->adc_bailout);
 }
 
 /* What no branch sends on is absorbed, whatever the dice say. */
@@ -136,7 +121,7 @@ static void note_loss(Walk *walk, const Roulette *r)
 
 static bool is_beyond_reach(const Walk *walk, const SurfaceSample *s)
 {
-    return !map_is_aimed(walk->rules->map) && !walk->is_diffuse && !walk->rules->has_air &&
+    return !map_is_aimed(walk->rules->map) && !walk->is_diffuse &&
            v3_dist(s->at.p, walk->rules->center) > walk->rules->reach;
 }
 
@@ -225,16 +210,6 @@ void photon_walk(TraceThread *thread, const WalkRules *rules, const Beam *beam,
         result->end = PATH_STORED;
 }
 
-/* Where the medium scatters the photon: of light far from the scene as much counts as comes to what
- * is near it, and where it comes in. */
-static Rgb scouted_air(Walk *walk, V3 *at)
-{
-    V3 from = v3_sub(walk->ray.o, walk->rules->center);
-    double near = NEAR_RADII * walk->rules->radius, far = fmax(1, v3_len(from) / near);
-    *at = v3_mad(walk->rules->center, 1 / far, from);
-    return rgb_scale(rgb_mul(walk_flux(walk), walk->weight), (float)(1 / (far * far)));
-}
-
 Rgb photon_scout(TraceThread *thread, const WalkRules *rules, const Beam *beam,
                  const BeamRay *start, Rng *rng, V3 *at)
 {
@@ -247,8 +222,10 @@ Rgb photon_scout(TraceThread *thread, const WalkRules *rules, const Beam *beam,
         Hit hit;
         SurfaceSample s;
         Step step = advance(&walk, &hit, NULL, &none);
-        if (step == STEP_SCATTERED)
-            found = scouted_air(&walk, at);
+        if (step == STEP_SCATTERED) {
+            found = rgb_mul(walk_flux(&walk), walk.weight);
+            *at = walk.ray.o;
+        }
         if (step != STEP_SURFACE || is_last(&walk, &hit))
             break;
         surface_sample(thread, &walk.ray, &hit, &walk.inside, &s);

@@ -74,7 +74,6 @@ typedef struct WalkRules {
     float brightness;   /* factor of every diffuse reflection (global) */
     const Interiors *inside; /* per light: the interiors it is in; what glows is asked for */
     bool has_media;
-    bool has_air; /* the atmosphere scatters: light comes back from all around */
     bool keeps_light; /* photons in full precision too */
 } WalkRules;
 
@@ -88,29 +87,15 @@ typedef struct WalkResult {
                     their reflectances say, and what the dice left; 1 in the mean over photons */
 } WalkResult;
 
-/* What lies within this many radii of the middle of the scene is near: photons there are stored for
- * themselves, and from outside of it they are aimed at it. */
-#define NEAR_RADII 2
-
-/* A place where a photon is to be stored. */
-typedef struct MediaStop {
-    double t;
-    Rgb power; /* this share of its own, scene units: see media_place */
-} MediaStop;
-
-/* A leg's parts: before what is near, there, and behind it. */
-enum { LEG_PARTS = 3 };
-
 /* What media do to a photon between two surfaces. */
 typedef struct MediaLeg {
-    MediaStop stops[LEG_PARTS];
-    int stop_count;
+    bool has_stop; /* the photon is to be stored, */
+    double stop;   /* at this t, */
+    Rgb power;     /* with this share of its own, scene units: see media_place */
     bool is_scattered; /* at t, into direction d; else it gets to the end */
-    bool is_far;       /* at a place that is not near */
     double t;
     V3 d;
-    Rgb weight;   /* share of the light that goes on */
-    double boost; /* flux is to count that often, as more of it is sent to what is near */
+    Rgb weight; /* share of the light that goes on */
 } MediaLeg;
 
 /* Find what media do on a leg.  Returns false when there are none.

@@ -95,12 +95,12 @@ static Rgb flux_at(Walk *walk, double length)
     return walk->is_diffuse ? walk->flux : beam_flux(walk->beam, walk->start, length);
 }
 
-void walk_keep_stop(Walk *walk, const MediaStop *stop, PhotonList *out, WalkResult *result)
+void walk_keep_stop(Walk *walk, const MediaLeg *leg, PhotonList *out, WalkResult *result)
 {
     unsigned flags = walk->rules->map == MAP_FOCUS ? PHOTON_FOCUSED : 0;
-    Rgb flux = flux_at(walk, walk->length + stop->t), power = rgb_mul(flux, stop->power);
-    Rgb weight = rgb_mul(walk->weight, interiors_fade(&walk->inside, stop->t));
-    V3 p = ray_at(&walk->ray, stop->t), from = v3_neg(walk->ray.d);
+    Rgb flux = flux_at(walk, walk->length + leg->stop), power = rgb_mul(flux, leg->power);
+    Rgb weight = rgb_mul(walk->weight, interiors_fade(&walk->inside, leg->stop));
+    V3 p = ray_at(&walk->ray, leg->stop), from = v3_neg(walk->ray.d);
     walk_settle(walk, flux, walk->weight, result);
     result->stored += store(walk, p, from, flags, rgb_mul(power, weight), out);
 }

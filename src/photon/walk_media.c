@@ -6,25 +6,19 @@
 
 #include "trace/media_along.h"
 
-/* Of photons scattered far away, at most this part is aimed at what is near. */
-#define AIMED_MOST 0.5
+/* Photons further from the middle of the scene than this many radii light nothing that is seen. */
+#define MEDIA_RADII 2
 
-/* Scattered so many mean free ways off, one in about so many photons is aimed. */
-#define AIMED_FALL 3
-
-/* Of places far from what is seen, where the light is smooth, one in so many is stored. */
-#define FAR_STOPS 4
-
-/* Where the parts of a leg end: far from what is seen, near it, and far again. */
-static void leg_ends(const WalkRules *rules, const Ray *ray, double length, double ends[LEG_PARTS])
+/* The part of a leg within reach of what is seen; the end is before the begin when none is. */
+static void leg_part(const WalkRules *rules, const Ray *ray, double length, double *begin,
+                     double *end)
 {
     V3 to = v3_sub(rules->center, ray->o);
-    double along = v3_dot(to, ray->d), radius = NEAR_RADII * rules->radius;
+    double along = v3_dot(to, ray->d), radius = MEDIA_RADII * rules->radius;
     double half2 = radius * radius - (v3_len2(to) - along * along);
     double half = half2 > 0 ? sqrt(half2) : 0;
-    ends[1] = half2 > 0 ? fmin(length, fmax(0, along + half)) : 0;
-    ends[0] = fmin(ends[1], fmax(0, along - half));
-    ends[2] = length;
+    *begin = fmax(0, along - half);
+    *end = half2 > 0 ? fmin(length, along + half) : 0;
 }
 
 static bool is_stored_in(const MediaHere *here)
@@ -38,58 +32,19 @@ static bool is_stored_in(const MediaHere *here)
     return false;
 }
 
-/* Return the part of the photons scattered at a distance from what is near, in mean free ways, that
- * is aimed at it: as what comes there at once, of all that ever will. */
-static double part_aimed(double ways)
-{
-    double at_once = exp(-ways);
-    return AIMED_MOST * at_once / (at_once + AIMED_MOST * AIMED_FALL * ways);
-}
-
-/* Draw where a medium sends a photon from p.  From far away, next to none would come to what is
- * near: some are aimed at it; *boost makes up for that. */
-static V3 turn(const WalkRules *rules, V3 p, V3 d, const Medium *medium, double extinction,
-               Rng *rng, double *boost)
-{
-    double e = (double)medium->eccentricity, radius = NEAR_RADII * rules->radius;
-    V3 to = v3_sub(rules->center, p);
-    double distance = v3_len(to), rim = ball_rim(radius, distance);
-    bool is_far = distance > radius;
-    double aimed = is_far ? part_aimed(extinction * (distance - radius)) : 0;
-    double choice = is_far ? rng_double(rng) : 1;
-    V2 u = {rng_double(rng), 0};
-    u.v = rng_double(rng);
-    V3 axis = is_far ? v3_scale(to, 1 / distance) : d, out;
-    if (choice < aimed) {
-        out = warp_to_frame(cone_direction(u, rim), axis);
-    } else {
-        double cosine = phase_sample(medium->phase, e, u.u);
-        double around = 2 * PMS_PI * u.v, sine = sqrt(fmax(0, 1 - cosine * cosine));
-        out = warp_to_frame(v3(sine * cos(around), sine * sin(around), cosine), d);
-    }
-    *boost = 1;
-    if (is_far) {
-        double phase = phase_value(medium->phase, e, v3_dot(d, out)) / phase_mean(medium->phase);
-        bool comes = choice < aimed || meets_ball(to, out, radius);
-        *boost = phase / ((1 - aimed) * phase + (comes ? aimed * 2 / rim : 0));
-    }
-    return out;
-}
-
-/* Draw where in a part of the leg the photon collides and whether it goes on from there. */
-static void scatter(const WalkRules *rules, const MediaHere *here, const MediaProfile *profile,
-                    const Ray *ray, Rgb weight, Rng *rng, MediaLeg *out)
+/* Draw where the photon collides and whether it goes on from there. */
+static void scatter(const MediaHere *here, const MediaProfile *profile, const Ray *ray, Rgb weight,
+                    Rng *rng, MediaLeg *out)
 {
     const MediaCell *cell;
     Rgb clear, kept;
     if (!media_collide(profile, weight, rng, &out->t, &clear, &cell)) {
-        out->weight = rgb_mul(out->weight, clear);
+        out->weight = clear;
         return;
     }
-    Rgb before = out->weight;
     out->is_scattered = true;
     out->weight = RGB_BLACK;
-    V3 at = ray_at(ray, out->t), p = here->is_homogeneous ? at : ray_at(ray, cell->at);
+    V3 p = ray_at(ray, here->is_homogeneous ? out->t : cell->at);
     const Medium *medium = media_choose(here, p, rgb_mul(weight, clear), medium_kept, rng, &kept);
     if (!medium)
         return;
@@ -97,25 +52,10 @@ static void scatter(const WalkRules *rules, const MediaHere *here, const MediaPr
     double chance = fmin(1, (double)(rgb_max(rgb_mul(weight, share)) / rgb_max(weight)));
     if (!(rng_double(rng) < chance))
         return;
-    out->weight = rgb_mul(before, rgb_scale(share, (float)(1 / chance)));
-    out->is_far = v3_dist(at, rules->center) > NEAR_RADII * rules->radius;
-    out->d =
-        turn(rules, at, ray->d, medium, (double)rgb_grey(cell->point.extinction), rng, &out->boost);
-}
-
-/* Draw where in a part of the leg the photon is stored: in parts that are far by chance, and the
- * less the less gets there. */
-static void stop(const MediaProfile *profile, Rgb weight, Rgb passed, bool is_near, Rng *rng,
-                 MediaLeg *out)
-{
-    MediaStop *stop = &out->stops[out->stop_count];
-    float chance = is_near ? 1 : fminf(1, rgb_max(passed)) / FAR_STOPS;
-    if (chance < 1 && !(rng_float(rng) < chance))
-        return;
-    if (!media_place(profile, weight, rng_double(rng), &stop->t, &stop->power))
-        return;
-    stop->power = rgb_mul(stop->power, rgb_scale(passed, 1 / chance));
-    out->stop_count++;
+    out->weight = rgb_scale(share, (float)(1 / chance));
+    double cosine = phase_sample(medium->phase, (double)medium->eccentricity, rng_double(rng));
+    double turn = 2 * PMS_PI * rng_double(rng), sine = sqrt(fmax(0, 1 - cosine * cosine));
+    out->d = warp_to_frame(v3(sine * cos(turn), sine * sin(turn), cosine), ray->d);
 }
 
 bool media_leg(TraceThread *thread, const WalkRules *rules, const Ray *ray, double length,
@@ -126,26 +66,27 @@ bool media_leg(TraceThread *thread, const WalkRules *rules, const Ray *ray, doub
     media_here(thread->tracer, inside, &here);
     if (here.list_count == 0 || rgb_is_black(weight))
         return false;
-    *out = (MediaLeg){.weight = RGB_WHITE, .boost = 1};
-    if (!isfinite(length))
-        length = tracer_scene(thread->tracer)->atmosphere.media_end;
-    double ends[LEG_PARTS], begin = 0;
-    leg_ends(rules, ray, length, ends);
-    may_stop = may_stop && is_stored_in(&here);
-    Rgb passed = RGB_WHITE;
-    for (int i = 0; i < LEG_PARTS && (may_stop || !out->is_scattered); begin = ends[i++]) {
-        if (!(ends[i] > begin))
-            continue;
-        MediaProfile profile;
-        media_profile(&here, ray, begin, ends[i], i == 2 ? begin + rules->radius : ends[i], rng,
-                      &thread->stats, &profile);
-        if (may_stop)
-            stop(&profile, weight, passed, i == 1, rng, out);
-        if (may_scatter && !out->is_scattered)
-            scatter(rules, &here, &profile, ray, rgb_mul(weight, out->weight), rng, out);
-        passed = rgb_mul(passed, media_clear(profile.depth));
+    *out = (MediaLeg){.weight = RGB_WHITE};
+    double begin, end;
+    leg_part(rules, ray, length, &begin, &end);
+    if (!(end > begin)) { /* far off: what is lost there is all that matters */
+        if (isfinite(length))
+            out->weight = media_transmittance(&here, ray, 0, length, 0, rng, &thread->stats);
+        return true;
     }
-    if (!may_scatter)
-        out->weight = passed;
+    MediaProfile profile;
+    Rgb before = media_transmittance(&here, ray, 0, begin, 0, rng, &thread->stats);
+    media_profile(&here, ray, begin, end, end, rng, &thread->stats, &profile);
+    if (may_stop && is_stored_in(&here))
+        out->has_stop = media_place(&profile, weight, rng_double(rng), &out->stop, &out->power);
+    if (may_scatter)
+        scatter(&here, &profile, ray, weight, rng, out);
+    else
+        out->weight = media_clear(profile.depth);
+    out->power = rgb_mul(out->power, before);
+    out->weight = rgb_mul(out->weight, before);
+    if (!out->is_scattered && isfinite(length))
+        out->weight = rgb_mul(
+            out->weight, media_transmittance(&here, ray, end, length, end, rng, &thread->stats));
     return true;
 }

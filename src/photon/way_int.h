@@ -30,7 +30,6 @@ typedef struct Walk {
     bool is_specular; /* was reflected or refracted */
     bool is_diffuse;  /* was reflected diffusely */
     int diffuse;      /* how often */
-    int far;          /* how often a medium scattered it far from the scene */
     bool is_straight; /* the last surface did not bend it */
     bool has_chosen;  /* thrown the dice before */
     bool is_scout;
@@ -130,8 +129,8 @@ bool walk_keeps(const Walk *walk, const Hit *hit);
  * least  as in photon_walk. */
 void walk_keep(Walk *walk, const Hit *hit, float least, PhotonList *out, WalkResult *result);
 
-/* Store a photon at a stop of a leg: its power is what passes there, times the length of way it
+/* Store a photon at the stop of a leg: its power is what passes there, times the length of way it
  * stands for. */
-void walk_keep_stop(Walk *walk, const MediaStop *stop, PhotonList *out, WalkResult *result);
+void walk_keep_stop(Walk *walk, const MediaLeg *leg, PhotonList *out, WalkResult *result);
 
 #endif

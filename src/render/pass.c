@@ -132,7 +132,7 @@ static Status make_volume(Pass *pass)
         return OK;
     if (series) {
         if (series->first->volume == 0)
-            series->first->volume = radius > 0 ? radius : volume_radius(pass->tracer, map, photons);
+            series->first->volume = radius > 0 ? radius : volume_radius(map, photons);
         radius = series->first->volume * series->shrink;
     }
     return volume_index_new(pass->tracer, map, photons, radius, threads, pass->diag, &pass->volume);

@@ -7,7 +7,6 @@
 #include <cmocka.h>
 
 #include "lit_methods.h"
-#include "open_walk.h"
 
 #define HEAD                                                                                       \
     "#version 3.7;\n"                                                                              \
@@ -107,60 +106,12 @@ static void smoke_in_a_room(void **state)
     assert_true(is_good);
 }
 
-/* The mean of walks from the eye of open_air_text. */
-static double mean_walk(const OpenAir *air, int walks, double *error)
-{
-    double sum = 0, squares = 0;
-    for (int i = 0; i < walks; i++) {
-        Rng rng = rng_at(29, 0, (uint64_t)i);
-        double x = rng_double(&rng) - 0.5, y = rng_double(&rng) - 0.5;
-        double light = open_walk(air, v3(0, 1, 0), v3_unit(v3(x, y - 0.3, 1)), &rng);
-        sum += light / walks;
-        squares += light * light / walks;
-    }
-    *error = sqrt((squares - sum * sum) / walks);
-    return sum;
-}
-
-/* An atmosphere that loses no light has no end: what it scatters far from all objects comes back.
- * In thin smoke that is light from far away. */
-static void smoke_without_end(void **state)
-{
-    (void)state;
-    const double extinctions[] = {0.2, 0.02};
-    bool is_good = true;
-    for (int i = 0; i < 2; i++) {
-        char text[2048], name[64];
-        OpenAir air = {extinctions[i], 40, v3(2, 4, -2)};
-        snprintf(text, sizeof text,
-                 "#version 3.7;\n"
-                 "global_settings { assumed_gamma 1 max_trace_level 100\n"
-                 "  pms { global_photons 20000 } }\n"
-                 "camera { location y direction <0,-0.3,1> right x up y }\n"
-                 "light_source { <2,4,-2> 20 fade_distance 1 fade_power 2 media_attenuation on }\n"
-                 "media { scattering { 1, %g extinction 4 } }\n"
-                 "plane { y, 0 pigment { rgb 1 } finish { ambient 0 diffuse 0.5 } }\n"
-                 "sphere { <0,-3,0>, 1 no_image pigment { rgb 0 } finish { diffuse 0 } }\n",
-                 air.x / 4);
-        double error, expected = mean_walk(&air, 50000, &error);
-        snprintf(name, sizeof name, "smoke without end of extinction %g", air.x);
-        Method method = methods[BY_GATHERING];
-        method.seeds = table_is_long() ? 32 : 8;
-        is_good &= method_expect(name, text, &method, expected, 4 * error / expected);
-        method = methods[BY_PATHS];
-        method.samples = 50;
-        is_good &= method_expect(name, text, &method, expected, 4 * error / expected);
-    }
-    assert_true(is_good);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(floor_under_a_glowing_layer),
         cmocka_unit_test(closed_sphere_of_smoke),
         cmocka_unit_test(smoke_in_a_room),
-        cmocka_unit_test(smoke_without_end),
     };
     return cmocka_run_group_tests_name("gather_media", tests, NULL, NULL);
 }
