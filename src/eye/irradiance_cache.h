@@ -24,8 +24,8 @@ typedef struct IrradianceRecord {
 } IrradianceRecord;
 
 /* Set the radius from what was gathered: the harmonic mean distance, less where the light changes
- * faster than that, within [least, most].  With has_nearest it is less where something is near: else
- * records speak for the whole way to a corner, where light drops ever faster.  Those are many
+ * faster than that, within [least, most].  With has_nearest it is less where something is near:
+ * else records speak for the whole way to a corner, where light drops ever faster.  Those are many
  * records of noise of their own, which shows unless it is averaged away. */
 void irradiance_record_init(IrradianceRecord *record, V3 p, V3 n, const GatheredLight *light,
                             bool has_nearest, double least, double most);

@@ -216,6 +216,8 @@ int photon_nearest(const PhotonMap *map, V3 p, V3 n, const GatherLimits *limits,
 {
     float found2;
     photon_search(map, p, n, limits, scratch, &found2);
+    if (limits->shrink > 0)
+        shrink(&scratch->found, limits->shrink, &found2);
     *radius2 = (double)found2;
     *out = scratch->found.index;
     return (int)scratch->found.count;

@@ -13,13 +13,13 @@
 #include "photon/photon_map_int.h"
 
 enum {
-    PLACE_PHOTONS = 50,   /* of an estimate */
-    PLACE_LEAST = 4,      /* of one of many passes */
+    PLACE_PHOTONS = 50,   /* of an estimate; in one of many passes it is on a part of their disk */
+    BESIDE_PHOTONS = 20,  /* fewer may lie to one side by chance */
     CLEAR_RAYS = 8,       /* along the surface, to see whether something stands on it */
     AREA_FOUND = 32,      /* of places that are tried to measure the disk */
     AREA_RAYS_MOST = 640, /* for that */
     LOOKUP_PLACES = 6,    /* nearest places that are tried, of each way they face */
-    LOOKUP_MORE = 5, /* times as many as before, if none of those is near for how dense they are */
+    LOOKUP_MORE = 5,      /* times as many as before, if those lie to one side */
     LOOKUP_MOST = 150,
     PLACES_MOST = 3 * LOOKUP_MOST,
     SPACING_PLACES = 4, /* that tell how dense places are */
@@ -31,8 +31,8 @@ enum {
 /* Heights of the rays along a surface, in radii: above roughness, below what stands there. */
 #define CLEAR_HEIGHT 0.05
 
-/* Photons whose mean place is further off, in radii, lie to one side: on a whole disk it is within
- * this with near certainty. */
+/* PLACE_PHOTONS photons whose mean place is further off, in radii, lie to one side: on a whole disk
+ * it is within this with near certainty. */
 #define ASIDE_MOST 0.2
 
 /* On half a disk it is at 4/(3 pi).  Further off still the place is beside a bright patch whose
@@ -99,18 +99,21 @@ static double log_decode(unsigned code, int bits)
     return exp2(((double)code - ldexp(1, bits - 1)) / 8);
 }
 
-/* A place has its radius in so many low bits of `from`, and in the rest the spacing there over the
- * radius. */
-enum { RADIUS_BITS = 10, SPACING_BITS = 6 };
+/* A place has its radius in so many low bits of `from`, then whether its surface ends there, and in
+ * the rest the spacing there over the radius. */
+enum { RADIUS_BITS = 9, EDGE_BIT = 1 << RADIUS_BITS, SPACING_SHIFT = 10, SPACING_BITS = 6 };
+
+/* A surface ends where less of the disk is of it. */
+#define EDGE_PART 0.75
 
 static double radius_decode(unsigned from)
 {
-    return log_decode(from & ((1 << RADIUS_BITS) - 1), RADIUS_BITS);
+    return log_decode(from & (EDGE_BIT - 1), RADIUS_BITS);
 }
 
 static double spacing_decode(unsigned from)
 {
-    return radius_decode(from) * log_decode(from >> RADIUS_BITS, SPACING_BITS);
+    return radius_decode(from) * log_decode(from >> SPACING_SHIFT, SPACING_BITS);
 }
 
 static unsigned place_from(const Photon *place)
@@ -285,21 +288,21 @@ static void estimate(PlaceWork *work, TraceThread *thread, GatherScratch *scratc
     disk.radius = sqrt(radius2);
     Rgb irradiance = RGB_BLACK;
     uint16_t flags = 0;
+    double part = 1;
     if (count > 0 && radius2 > 0 && isfinite(radius2)) {
         double aside = mean_aside(work->photons, &disk, index, count);
-        if (aside > BESIDE_MOST)
-            disk.radius /= 2;
         set_lift(thread, &disk);
         bool is_all_clear = disk_is_clear(thread, &disk);
-        double part = 1;
-        if (!is_all_clear || aside > ASIDE_MOST)
-            part = disk_part(thread, &disk, &rng);
         flags = is_all_clear ? 0 : FLAG_CLUTTERED;
+        if (aside > BESIDE_MOST && count >= BESIDE_PHOTONS)
+            disk.radius /= 2;
+        if (!is_all_clear || aside > ASIDE_MOST * sqrt((double)PLACE_PHOTONS / count))
+            part = disk_part(thread, &disk, &rng);
         irradiance = sum_photons(thread, work->photons, &disk, index, count, is_all_clear);
         irradiance =
             rgb_scale(irradiance, (float)(1 / (PMS_PI * disk.radius * disk.radius * part)));
     }
-    unsigned code = log_encode(sqrt(radius2), RADIUS_BITS);
+    unsigned code = log_encode(sqrt(radius2), RADIUS_BITS) | (part < EDGE_PART ? EDGE_BIT : 0);
     rgbe_encode(irradiance, &rng, place->rgbe);
     place->phi = (uint8_t)code;
     place->theta = (uint8_t)(code >> 8);
@@ -398,7 +401,8 @@ static double spacing_at(const PhotonMap *places, const Photon *place, GatherScr
     double radius2;
     photon_nearest(places, photon_place(places, place), normal14_decode(place->flags >> 2), &limits,
                    scratch, &index, &radius2);
-    return sqrt(radius2 * PMS_PI / SPACING_PLACES) / 2;
+    double found = sqrt(radius2 * PMS_PI / SPACING_PLACES) / 2;
+    return isfinite(found) ? found : radius_decode(place_from(place)) / 2; /* there are so few */
 }
 
 static void find_spacings_chunk(void *ctx, size_t index, int thread)
@@ -411,7 +415,7 @@ static void find_spacings_chunk(void *ctx, size_t index, int thread)
         double found = spacing_at(places, &place, spacing->work->scratches[thread]);
         uint16_t *from = &places->blocks[i / BLOCK_PHOTONS].from[i % BLOCK_PHOTONS];
         unsigned code = log_encode(found / radius_decode(*from), SPACING_BITS);
-        *from = (uint16_t)((unsigned)*from | code << RADIUS_BITS);
+        *from = (uint16_t)((unsigned)*from | code << SPACING_SHIFT);
     }
 }
 
@@ -448,9 +452,9 @@ static Status estimate_all(PlaceWork *work, const IrradianceOptions *options, Di
 
 static GatherLimits place_search(const IrradianceOptions *options)
 {
-    int photons = (int)lrint(PLACE_PHOTONS * options->area);
-    double radius = PLACE_RADIUS_MOST * options->radius * sqrt(options->area);
-    return (GatherLimits){.max_photons = photons > PLACE_LEAST ? photons : PLACE_LEAST,
+    double radius = PLACE_RADIUS_MOST * options->radius;
+    return (GatherLimits){.max_photons = PLACE_PHOTONS,
+                          .shrink = options->area < 1 ? sqrt(options->area) : 0,
                           .max_radius = radius > 0 ? radius : INFINITY,
                           .shape = GATHER_DISK,
                           .normal_cosine = PHOTON_COSINE};
@@ -515,6 +519,7 @@ typedef struct NearPlace {
     Photon place;
     V3 p;
     double radius;       /* scene units */
+    bool is_at_edge;     /* of a surface */
     double off2, apart2; /* squares of the distance as GATHER_DISK measures it, in radii and in
                             units of the spacing there */
 } NearPlace;
@@ -537,6 +542,7 @@ static void add_place(Vicinity *around, const PhotonMap *map, uint32_t index)
     double radius = radius_decode(from), spacing = spacing_decode(from);
     near.p = photon_place(map, &near.place);
     near.radius = radius;
+    near.is_at_edge = (from & EDGE_BIT) != 0;
     double distance2 = photon_distance2(map, &near.place, around->p, around->n);
     near.off2 = distance2 / (radius * radius);
     near.apart2 = distance2 / (spacing * spacing);
@@ -587,6 +593,15 @@ static bool is_one_sided(const Vicinity *around)
     return v3_len2(around->aside) > 0.5 * around->looked_at * around->apart2;
 }
 
+/* Do places end because there is no more light, not because there is no more surface? */
+static bool ends_in_the_dark(const Vicinity *around)
+{
+    for (int i = 0; i < around->count; i++)
+        if (around->best[i].is_at_edge)
+            return false;
+    return is_one_sided(around);
+}
+
 /* Find the places that may speak for a point, best first.
  *
  * Where bright light ends, places crowd on one side.  The nearest one would be of that side as far
@@ -602,9 +617,10 @@ static void find_speakers(const IrradianceMap *map, GatherScratch *scratch, Gath
         most *= LOOKUP_MORE;
     } while (!around->is_all && most <= LOOKUP_MOST &&
              (around->count == 0 || is_one_sided(around)));
-    while (around->count > 0 && is_one_sided(around) &&
-           around->best[around->count - 1].apart2 > PLACE_BESIDE * PLACE_BESIDE)
-        around->count--;
+    if (ends_in_the_dark(around))
+        while (around->count > 0 &&
+               around->best[around->count - 1].apart2 > PLACE_BESIDE * PLACE_BESIDE)
+            around->count--;
 }
 
 Rgb irradiance_at(const IrradianceMap *map, TraceThread *thread, GatherScratch *scratch,

@@ -241,7 +241,7 @@ static Status make_irradiance(Emission *emission, Stats *stats, PhotonMaps *maps
     else if (status == OK)
         status = irradiance_map_new(emission->tracer, maps->global, places.items, places.count,
                                     &options, emission->diag, &maps->irradiance);
-    stats->seconds[PHASE_IRRADIANCE] += clock_wall() - started;
+    stats->seconds[PHASE_PHOTON_BUILD] += clock_wall() - started;
     return status;
 }
 

@@ -21,15 +21,22 @@ static double learned(double known, double seen)
 
 void pace_learn(Pace *pace, const double spent[PHASE_COUNT], double photon_part, double samples)
 {
-    double photons = spent[PHASE_PHOTON_EMIT] + spent[PHASE_PHOTON_BUILD] + spent[PHASE_IRRADIANCE];
+    double photons = spent[PHASE_PHOTON_EMIT] + spent[PHASE_PHOTON_BUILD];
     pace->photon_seconds = learned(pace->photon_seconds, photons / photon_part);
+    pace->record_seconds = learned(pace->record_seconds, spent[PHASE_IRRADIANCE]);
     if (samples > 0)
         pace->sample_seconds = learned(pace->sample_seconds, spent[PHASE_EYE] / samples);
 }
 
+/* Of a pass, without its samples. */
+static double shared_seconds(const Pace *pace)
+{
+    return pace->photon_part * pace->photon_seconds + pace->record_seconds;
+}
+
 double pace_pass_seconds(const Pace *pace, double samples)
 {
-    return pace->photon_part * pace->photon_seconds + samples * pace->sample_seconds;
+    return shared_seconds(pace) + samples * pace->sample_seconds;
 }
 
 double pace_left(const Pace *pace)
@@ -41,14 +48,15 @@ double pace_left(const Pace *pace)
 
 void pace_fit_photons(Pace *pace, double samples)
 {
-    double eye = samples * pace->sample_seconds, room = pace_left(pace) / PASSES_LEAST - eye;
-    double fitting = fmax(room, eye) / pace->photon_seconds;
+    double eye = samples * pace->sample_seconds + pace->record_seconds;
+    double room = pace_left(pace) / PASSES_LEAST - eye,
+           fitting = fmax(room, eye) / pace->photon_seconds;
     pace->photon_part = fitting < 1 ? fmax(PHOTON_PART_LEAST, fitting) : 1;
 }
 
 double pace_fit_samples(const Pace *pace, double samples, double passes)
 {
-    double room = pace_left(pace) / passes - pace->photon_part * pace->photon_seconds;
+    double room = pace_left(pace) / passes - shared_seconds(pace);
     return fmin(1, fmax(0, room / (samples * pace->sample_seconds)));
 }
 

@@ -12,6 +12,7 @@ typedef struct Pace {
     double started;        /* of the render, by clock_wall */
     double ending;         /* seconds that writing the picture takes */
     double photon_seconds; /* of all photons of a pass; 0: not known yet */
+    double record_seconds; /* of the records of indirect light of a pass, however many photons */
     double sample_seconds; /* of one sample of the eye; 0: not known yet */
     double photon_part;    /* of the photons asked for, in each pass */
 } Pace;

@@ -193,6 +193,11 @@ static void photons_are_cut_until_some_passes_fit(void **state)
     pace.seconds = 1000;
     pace_fit_photons(&pace, 1);
     assert_true(pace.photon_part == 1);
+    pace.seconds = 104; /* records of 10 seconds in each pass are no reason for fewer photons */
+    pace.photon_seconds = 1.5;
+    pace.record_seconds = 10;
+    pace_fit_photons(&pace, 1);
+    assert_true(pace.photon_part == 1);
 }
 
 static void samples_are_cut_until_some_passes_fit(void **state)
