@@ -14,6 +14,11 @@
  * the global map is gathered; it is not known apart. */
 #define HIDDEN_PHOTON_PART 0.1
 
+/* Pixels worse than this part of them get no more samples than the last of these.  The worst, of
+ * which five in a hundred do not count, could take all samples there are; and how wrong a pixel is,
+ * is known by chance. */
+#define WORST_PART 0.8
+
 /* Noise aims below what is wanted: the bound is above the figure. */
 #define AIM 0.72
 
@@ -85,6 +90,9 @@ static void weigh_pixels(const Planning *p)
         p->steering->excess[i] = (float)(taken(p, i) * relative * relative);
         p->steering->most[i] = (float)rate_most(p, i);
     }
+    float worst = (float)error_percentile(p->steering->excess, p->steering->pixels, WORST_PART);
+    for (size_t i = 0; i < p->steering->pixels; i++)
+        p->steering->excess[i] = fminf(p->steering->excess[i], worst);
 }
 
 /* Return the samples a pass that bring a pixel's relative standard error down to `level` in the
