@@ -2,6 +2,7 @@
 #include "cli/args_int.h"
 
 #include <limits.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,22 +15,35 @@
 /* The file beside the first picture that the state is kept in. */
 #define STATE_ENDING ".pmsstate"
 
-/* A number and s, m, h or d; seconds without a letter. */
-Status args_time(const Args *args, double *seconds)
+/* Numbers with d, h, m or s behind them, in this order; seconds without. */
+static bool read_seconds(const char *text, double *seconds)
 {
     static const char letters[] = "smhd";
     static const double units[] = {1, 60, 3600, 86400};
+    ptrdiff_t below = sizeof units / sizeof *units;
+    *seconds = 0;
+    do {
+        char *end;
+        double number = strtod(text, &end);
+        const char *letter = *end ? strchr(letters, *end) : letters;
+        if (end == text || !(number >= 0) || !letter || letter - letters >= below)
+            return false;
+        below = letter - letters;
+        *seconds += number * units[below];
+        text = *end ? end + 1 : end;
+    } while (*text);
+    return true;
+}
+
+Status args_time(const Args *args, double *seconds)
+{
     const char *text = args->value[OPT_TIME];
     if (!text)
         return OK;
-    char *end;
-    double number = strtod(text, &end);
-    const char *letter = *end ? strchr(letters, *end) : letters;
-    bool is_time = end != text && letter && (!*end || !end[1]);
-    *seconds = is_time ? number * units[letter - letters] : 0;
-    if (!is_time || !(*seconds > 0 && *seconds <= SECONDS_MAX))
+    if (!read_seconds(text, seconds) || !(*seconds > 0 && *seconds <= SECONDS_MAX))
         return diag_fail(args->diag, ERR_USAGE,
-                         "--time wants a time such as 90, 90s, 5m, 1.5h or 2d, got '%s'", text);
+                         "--time wants a time such as 90, 90s, 5m, 4m30s, 1.5h or 2d, got '%s'",
+                         text);
     return OK;
 }
 

@@ -73,7 +73,7 @@ ok $? "one pass is a picture"
 run timeout 60 $P --time=0.3s -o "$T/timed.exr" --stats="$T/timed.json"
 [ "$code" -eq 0 ] && grep -q '"passes": [1-9]' "$T/timed.json"
 ok $? "a time limit ends it"
-run timeout 60 $P --time=1d --passes=2 -o "$T/both.exr" --progress=json
+run timeout 60 $P --time=1d2h0.5m --passes=2 -o "$T/both.exr" --progress=json
 [ "$code" -eq 0 ] && grep -q '"pass": 1, "passes": 2, "phase": ' "$T/err"
 ok $? "whichever limit comes first; progress counts passes"
 tail -n 1 "$T/err" | grep -qE '^\{"done": true, "passes": 2, "passes_of_this_run": 2, "seconds": [0-9.e-]+, "error": [0-9.e-]+, "error_bound": [0-9.e-]+, "files": \["[^"]*both.exr"\]\}$'
@@ -130,7 +130,7 @@ for option in --passes=3 --resume; do
     fails 2 "${option%=3} wants --progressive" "$option alone" "$PMS" "$T/s.pms" $option -o "$T/a.exr"
 done
 fails 2 "whole number from 1" "no passes" $P --passes=0 -o "$T/a.exr"
-for time in 0 -1 5x 3mm m nan 1e30d ''; do
+for time in 0 -1 5x 3mm m nan 1e30d 1s2m 5m5m 4m30x ''; do
     fails 2 "a time such as|wants T after it .*90s" "--time='$time'" $P --time="$time" -o "$T/a.exr"
 done
 fails 2 "\+A has no meaning" "+A" $P +A0.1 -o "$T/a.exr"
