@@ -72,7 +72,7 @@ enum { FACINGS = 6 };
 
 /* Places are found among those that face the same way: a search among all would go through
  * thousands of others before it finds a small surface that faces elsewhere, or that there is none.
- * Power: irradiance; direction: codes of radius and spacing; flags: see above. */
+ * Power: irradiance; direction: codes of radius, edge and spacing; flags: see above. */
 struct IrradianceMap {
     PhotonMap *places[FACINGS]; /* NULL: none */
     double reach;               /* how far the furthest reaching place speaks, scene units */

@@ -49,8 +49,8 @@ double pace_left(const Pace *pace)
 void pace_fit_photons(Pace *pace, double samples)
 {
     double eye = samples * pace->sample_seconds + pace->record_seconds;
-    double room = pace_left(pace) / PASSES_LEAST - eye,
-           fitting = fmax(room, eye) / pace->photon_seconds;
+    double room = pace_left(pace) / PASSES_LEAST - eye;
+    double fitting = fmax(room, eye) / pace->photon_seconds;
     pace->photon_part = fitting < 1 ? fmax(PHOTON_PART_LEAST, fitting) : 1;
 }
 

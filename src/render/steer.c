@@ -69,9 +69,9 @@ static double taken(const Planning *p, size_t i)
     return (double)p->halves[0].good[i] + (double)p->halves[1].good[i];
 }
 
-/* The samples of a pixel in a pass that still help.  They share its photons: with n of them its
- * error squared is the photons' part and the n-th of the rest, and its work that of the photons and
- * n; this n makes the most of it. */
+/* The samples of a pixel in a pass that still help.  They share its photons and records: with n of
+ * them its error squared is these' part and the n-th of the rest, and its work that of these and n;
+ * this n makes the most of it. */
 static double rate_most(const Planning *p, size_t i)
 {
     double error = (double)p->map->smooth[i], shared = (double)p->map->shared[i];

@@ -34,7 +34,7 @@ void steering_even(Steering *steering, float rate);
 /* What a plan is made for. */
 typedef struct SteeringGoal {
     double error;         /* relative error wanted; 0: as little as there is work for */
-    double shared_work;   /* of a pass, in samples of a pixel; 0: there are no photons */
+    double shared_work;   /* of a pass, in samples of a pixel; 0: they share nothing */
     double passes_left;   /* that there is time for; infinite: no limit */
 } SteeringGoal;
 
