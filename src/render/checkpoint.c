@@ -343,6 +343,8 @@ static Status check_state(const Reader *r, const SeriesState *state)
     if (!is_radius(header->caustic_radius) || !is_radius(header->global_radius) ||
         !is_radius(header->volume_radius))
         return senseless(r, "a gather radius that is none");
+    if (header->planned > 2 * header->passes + STEERING_FIRST_PLAN)
+        return senseless(r, "a plan for more passes than one is made for");
     for (size_t i = 0; i < state->steering.pixels; i++)
         if (!(state->steering.rate[i] >= 0 && state->steering.rate[i] <= UINT16_MAX))
             return senseless(r, "a rate of samples that no pass has");

@@ -32,9 +32,6 @@ enum { SERIES_RNG = 0x736572, HALF_RNG = 0x68616c };
 /* From this pass on the product of the factors is had in closed form. */
 enum { SERIES_FAR = 4096 };
 
-/* The passes before samples first go where errors are. */
-enum { FIRST_PLAN = 4 };
-
 /* What writing the picture takes, seconds for a pixel, before it is known. */
 #define ENDING_SECONDS 4e-7
 
@@ -363,7 +360,7 @@ static Status run_pass(Series *s, double part)
 static void fit_samples(Series *s)
 {
     double samples = steering_samples(&s->state.steering), asked = s->options.samples;
-    double part = pace_fit_samples(&s->pace, samples, FIRST_PLAN);
+    double part = pace_fit_samples(&s->pace, samples, STEERING_FIRST_PLAN);
     if (part < 1)
         steering_even(&s->state.steering, (float)fmax(1, part * asked));
 }
@@ -483,7 +480,8 @@ static Status make_films(Series *s)
     s->film.samples = mem_array(pixels, sizeof *s->film.samples);
     if (!s->film.samples)
         return diag_no_memory(s->diag, "the samples of pixels");
-    return series_state_init(&s->state, &s->film, (float)s->options.samples, FIRST_PLAN, s->diag);
+    return series_state_init(&s->state, &s->film, (float)s->options.samples, STEERING_FIRST_PLAN,
+                             s->diag);
 }
 
 static Status run_series(Series *s)

@@ -165,7 +165,7 @@ static void any_damage_is_seen(void **state)
     free(bytes);
 }
 
-typedef enum Spot { RATE, CAUSTIC, GLOBAL, VOLUME, VALUE, DEPTH, CLUE } Spot;
+typedef enum Spot { RATE, PLANNED, CAUSTIC, GLOBAL, VOLUME, VALUE, DEPTH, CLUE } Spot;
 
 /* Put a number somewhere into a state. */
 static void put_number(SeriesState *made, Spot place, double number)
@@ -177,6 +177,8 @@ static void put_number(SeriesState *made, Spot place, double number)
         [DEPTH] = &sum->values[sum->z_begin + 1], [CLUE] = &sum->values[sum->clues]};
     if (place == RATE)
         made->steering.rate[PIXELS - 1] = (float)number;
+    else if (place == PLANNED)
+        made->steering.until = (uint64_t)number;
     else
         *places[place] = number;
 }
@@ -208,6 +210,8 @@ static void what_makes_no_sense_is_refused(void **state)
                  {RATE, INFINITY, false, "rate of samples"},
                  {RATE, 65536, false, "rate of samples"},
                  {RATE, 1e30, false, "rate of samples"},
+                 {PLANNED, 4, true, ""},
+                 {PLANNED, 1e18, false, "plan for more passes"},
                  {CAUSTIC, 0, true, ""},
                  {CAUSTIC, -1, false, "gather radius"},
                  {GLOBAL, NAN, false, "gather radius"},
