@@ -13,8 +13,8 @@
 
 #include "render/error_map.h"
 
-/* The most samples of a pixel in a pass, and when the first plan is due.  Later ones are due when as
- * many passes again are made, at the latest. */
+/* The most samples of a pixel in a pass, and when the first plan is due.  Later ones are due when
+ * as many passes again are made, at the latest. */
 enum { STEERING_RATE_MOST = 16, STEERING_FIRST_PLAN = 4 };
 
 typedef struct Steering {
