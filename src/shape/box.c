@@ -2,6 +2,16 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "shape/shape_int.h"
 
+Shape *shape_box(Arena *arena, V3 corner, V3 opposite)
+{
+    Shape *shape = leaf_new(arena, SHAPE_BOX);
+    if (!shape)
+        return NULL;
+    shape->u.box = (BoxParams){v3_min(corner, opposite), v3_max(corner, opposite)};
+    leaf_place(shape, &XFORM_IDENTITY);
+    return shape;
+}
+
 /* Where a line enters and leaves a box, and through which sides. */
 typedef struct Passage {
     double in, out;
@@ -38,7 +48,7 @@ static LeafHit side_hit(const Shape *shape, const LocalRay *ray, double t, uint3
     return (LeafHit){t, error / d + 4 * EPS_DOUBLE * fabs(t), part, change, true};
 }
 
-void box_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
+static void box_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
 {
     const BoxParams *b = &shape->u.box;
     Passage p = {-INFINITY, INFINITY, 0, 0};
@@ -58,12 +68,12 @@ void box_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
     }
 }
 
-void box_point(const Shape *shape, uint32_t part, V3 p, LocalPoint *out)
+static void box_point(const Shape *shape, const Crossing *crossing, V3 p, LocalPoint *out)
 {
     static const V3 normals[6] = {{-1, 0, 0}, {1, 0, 0},  {0, -1, 0},
                                   {0, 1, 0},  {0, 0, -1}, {0, 0, 1}};
     V3 lo = shape->u.box.lo, hi = shape->u.box.hi;
-    switch (part) {
+    switch (crossing->part) {
     case 0:
         p.x = lo.x;
         break;
@@ -84,13 +94,14 @@ void box_point(const Shape *shape, uint32_t part, V3 p, LocalPoint *out)
         break;
     }
     out->p = p;
-    out->n = normals[part];
-    double side = fabs(v3_dot(p, normals[part]));
+    out->ng = normals[crossing->part];
+    double side = fabs(v3_dot(p, out->ng));
     out->error = PLACE_EPS * side;
 }
 
-V2 box_uv(const Shape *shape, uint32_t part, V3 p)
+static V2 box_uv(const Shape *shape, uint32_t part, double u, double v, V3 p)
 {
+    (void)u, (void)v;
     V3 lo = shape->u.box.lo, size = v3_sub(shape->u.box.hi, lo);
     double x = size.x > 0 ? (p.x - lo.x) / size.x : 0;
     double y = size.y > 0 ? (p.y - lo.y) / size.y : 0;
@@ -111,14 +122,36 @@ V2 box_uv(const Shape *shape, uint32_t part, V3 p)
     }
 }
 
-bool box_is_inside(const Shape *shape, V3 p)
+static bool box_is_inside(const Shape *shape, V3 p)
 {
     V3 lo = shape->u.box.lo, hi = shape->u.box.hi;
     return p.x >= lo.x && p.x <= hi.x && p.y >= lo.y && p.y <= hi.y && p.z >= lo.z && p.z <= hi.z;
 }
 
-Bound box_bound(const Shape *shape)
+static Bound box_bound(const Shape *shape)
 {
     Bound b = {shape->u.box.lo, shape->u.box.hi};
     return bound_pad(shape->is_transformed ? bound_transform(b, &shape->xform) : b);
 }
+
+static V3 box_farthest(const Shape *shape, V3 n)
+{
+    return bound_farthest((Bound){shape->u.box.lo, shape->u.box.hi}, n);
+}
+
+static bool box_transform(Shape *shape, const Xform *x)
+{
+    if (shape->is_transformed || !xform_is_plain(x))
+        return false;
+    shape->u.box.lo = xform_point(x, shape->u.box.lo);
+    shape->u.box.hi = xform_point(x, shape->u.box.hi);
+    return true;
+}
+
+const ShapeOps box_ops = {.hits = box_hits,
+                          .point = box_point,
+                          .uv = box_uv,
+                          .is_inside = box_is_inside,
+                          .bound = box_bound,
+                          .farthest = box_farthest,
+                          .transform = box_transform};

@@ -7,6 +7,21 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "shape/shape_int.h"
 
+Shape *shape_cone(Arena *arena, V3 bottom, double bottom_radius, V3 top, double top_radius,
+                  bool is_open)
+{
+    Shape *shape = leaf_new(arena, SHAPE_CONE);
+    if (!shape)
+        return NULL;
+    V3 axis = v3_sub(top, bottom), n = v3_unit(axis), s, t;
+    shape->u.cone = (ConeParams){bottom_radius, top_radius, v3_dot(axis, n)};
+    shape->is_open = is_open;
+    v3_frame(n, &s, &t);
+    Xform place = xform_frame(s, t, n, bottom);
+    leaf_place(shape, &place);
+    return shape;
+}
+
 /* The part of a line inside a convex solid. */
 typedef struct Chord {
     LeafHit in, out; /* t may be infinite; then the other fields mean nothing */
@@ -129,7 +144,7 @@ static bool cut_wall(Chord *chord, const Wall *w, double base)
     return chord->in.t < chord->out.t;
 }
 
-void cone_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
+static void cone_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
 {
     const ConeParams *cone = &shape->u.cone;
     out->count = 0;
@@ -139,22 +154,23 @@ void cone_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
     V3 f = v3_mad(ray->o, base, ray->d), error = local_error(ray, base);
     Chord chord = CHORD_LINE;
     if (!cut_slab(&chord, ray->o.z, ray->d.z, error.z + PLACE_EPS * cone->height, 0, cone->height,
-                  1, 2, !cone->is_open))
+                  1, 2, !shape->is_open))
         return;
     Wall wall = wall_of(cone, f, ray->d, error);
     if (cut_wall(&chord, &wall, base) && chord.in.t < chord.out.t)
         chord_hits(&chord, out);
 }
 
-void cone_point(const Shape *shape, uint32_t part, V3 p, LocalPoint *out)
+static void cone_point(const Shape *shape, const Crossing *crossing, V3 p, LocalPoint *out)
 {
+    uint32_t part = crossing->part;
     const ConeParams *cone = &shape->u.cone;
     double growth = growth_of(cone);
     out->error = 2 * PLACE_EPS * (part ? cone->height : num_max(cone->bottom, cone->top));
     if (part) {
         p.z = part == 1 ? 0 : cone->height;
         out->p = p;
-        out->n = v3(0, 0, part == 1 ? -1 : 1);
+        out->ng = v3(0, 0, part == 1 ? -1 : 1);
         return;
     }
     p.z = num_max(0, num_min(cone->height, p.z));
@@ -162,20 +178,21 @@ void cone_point(const Shape *shape, uint32_t part, V3 p, LocalPoint *out)
     double pull = rho > 0 ? radius / rho : 0;
     out->p = v3(p.x * pull, p.y * pull, p.z);
     /* At the tip there is no normal: along the axis is as good as any. */
-    out->n = rho > 0 ? v3(p.x / rho, p.y / rho, -growth) : v3(0, 0, growth < 0 ? 1 : -1);
+    V3 n = v3(p.x / rho, p.y / rho, -growth);
+    out->ng = rho > 0 ? v3_unit(n) : v3(0, 0, growth < 0 ? 1 : -1);
 }
 
-bool cone_is_inside(const Shape *shape, V3 p)
+static bool cone_is_inside(const Shape *shape, V3 p)
 {
     const ConeParams *cone = &shape->u.cone;
     double radius = cone->bottom + growth_of(cone) * p.z;
     double w = p.x * p.x + p.y * p.y;
-    if (cone->is_open)
+    if (shape->is_open)
         return p.z >= 0 && p.z <= cone->height && w <= radius * radius;
     return p.z > 0 && p.z < cone->height && w < radius * radius;
 }
 
-Bound cone_bound(const Shape *shape)
+static Bound cone_bound(const Shape *shape)
 {
     const double(*m)[4] = shape->xform.to;
     V3 reach = v3(hypot(m[0][0], m[0][1]), hypot(m[1][0], m[1][1]), hypot(m[2][0], m[2][1]));
@@ -187,3 +204,18 @@ Bound cone_bound(const Shape *shape)
     }
     return bound_pad(b);
 }
+
+/* On one of the circles at its ends. */
+static V3 cone_farthest(const Shape *shape, V3 n)
+{
+    const ConeParams *cone = &shape->u.cone;
+    V3 bottom = circle_farthest(cone->bottom, 0, n);
+    V3 top = circle_farthest(cone->top, cone->height, n);
+    return v3_dot(bottom, n) > v3_dot(top, n) ? bottom : top;
+}
+
+const ShapeOps cone_ops = {.hits = cone_hits,
+                           .point = cone_point,
+                           .is_inside = cone_is_inside,
+                           .bound = cone_bound,
+                           .farthest = cone_farthest};

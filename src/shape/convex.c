@@ -18,7 +18,7 @@ bool shape_is_convex_leaf(const Shape *shape)
     case SHAPE_BOX:
         return !shape->is_inverted;
     case SHAPE_CONE:
-        return !shape->is_inverted && !shape->u.cone.is_open;
+        return !shape->is_inverted && !shape->is_open;
     default:
         return false;
     }

@@ -21,8 +21,8 @@ typedef struct Sweep {
     Crossing *items;
     uint8_t *inside; /* per child */
     int child_count, inside_count;
-    int written; /* results so far, from the start of items' range */
-    int lister;  /* the only child with crossings, or one of the two below */
+    int written;            /* results so far, from the start of items' range */
+    int lister;             /* the only child with crossings, or one of the two below */
     const ConvexCore *core; /* stands for all convex leaves under the number of the first, slot */
     uint32_t slot;
 } Sweep;
@@ -391,7 +391,7 @@ static bool clip_list(const Shape *shape, const Line *line, ShapeScratch *scratc
 static bool list_reached(const Shape *shape, const Line *line, ShapeScratch *scratch)
 {
     int base = scratch->count;
-    bool is_inside = shape->kind < SHAPE_UNION ? leaf_list(shape, line->ray, scratch)
+    bool is_inside = shape->kind < SHAPE_UNION ? leaf_list(shape, line, scratch)
                                                : node_list(shape, line, scratch);
     if (shape->is_inverted) {
         is_inside = !is_inside;

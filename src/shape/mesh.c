@@ -34,6 +34,16 @@ void mesh_done(MeshData *mesh)
     mesh->index = NULL;
 }
 
+Shape *shape_mesh(Arena *arena, const MeshData *mesh)
+{
+    Shape *shape = leaf_new(arena, SHAPE_MESH);
+    if (!shape)
+        return NULL;
+    shape->u.mesh = mesh;
+    leaf_place(shape, &XFORM_IDENTITY);
+    return shape;
+}
+
 /* Return the flat normal of a triangle, in the language's sense, not unit. */
 static V3 flat_normal(const MeshData *mesh, uint32_t triangle)
 {
@@ -61,8 +71,9 @@ static void fill(const Shape *shape, const LocalRay *ray, const TriHit *hit, Cro
                       .v = hit->v};
 }
 
-bool mesh_closest(const Shape *shape, const Ray *ray, Crossing *out)
+static bool mesh_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Crossing *out)
 {
+    (void)scratch;
     LocalRay local;
     TriHit hit;
     local_ray(shape, ray, &local);
@@ -98,11 +109,11 @@ static int all_triangles(const MeshData *mesh, const Ray *line, ShapeScratch *sc
     }
 }
 
-bool mesh_list(const Shape *shape, const Ray *ray, ShapeScratch *scratch)
+static bool mesh_list(const Shape *shape, const Line *part, ShapeScratch *scratch)
 {
     const MeshData *mesh = shape->u.mesh;
     LocalRay local;
-    local_ray(shape, ray, &local);
+    local_ray(shape, part->ray, &local);
     Ray line = local_part(&local, -INFINITY, INFINITY);
     int count = all_triangles(mesh, &line, scratch);
     bool is_solid = mesh->has_inside && count % 2 == 0;
@@ -116,7 +127,7 @@ bool mesh_list(const Shape *shape, const Ray *ray, ShapeScratch *scratch)
     return false;
 }
 
-void mesh_point(const Shape *shape, const Crossing *crossing, V3 p, ShapePoint *out)
+static void mesh_point(const Shape *shape, const Crossing *crossing, V3 p, LocalPoint *out)
 {
     const MeshData *mesh = shape->u.mesh;
     const uint32_t *c = mesh->corners + 3 * (size_t)crossing->part;
@@ -124,27 +135,30 @@ void mesh_point(const Shape *shape, const Crossing *crossing, V3 p, ShapePoint *
     (void)p;
     V3 a = mesh->vertices[c[0]], ab = v3_sub(mesh->vertices[c[1]], a);
     out->p = v3_mad(v3_mad(a, u, ab), v, v3_sub(mesh->vertices[c[2]], a));
-    out->p_error = 2 * shape->rounding.place;
-    out->ng = out->ns = flat_normal(mesh, crossing->part);
+    out->error = 2 * shape->rounding.place;
+    out->ng = v3_unit(flat_normal(mesh, crossing->part));
     const uint32_t *nc = mesh->normal_corners + 3 * (size_t)crossing->part;
     if (!mesh->normals || nc[0] == UINT32_MAX)
         return;
     const V3 *n = mesh->normals;
     V3 ns = v3_mad(v3_mad(v3_scale(n[nc[0]], 1 - u - v), u, n[nc[1]]), v, n[nc[2]]);
-    if (v3_len2(ns) > 0)
-        out->ns = v3_dot(ns, out->ng) < 0 ? v3_neg(ns) : ns;
+    out->is_smooth = v3_len2(ns) > 0;
+    out->ns = v3_unit(v3_dot(ns, out->ng) < 0 ? v3_neg(ns) : ns);
 }
 
-V2 mesh_uv(const Shape *shape, uint32_t triangle, double u, double v)
+static V2 mesh_uv(const Shape *shape, uint32_t triangle, double u, double v, V3 p)
 {
     const MeshData *mesh = shape->u.mesh;
+    (void)p;
+    if (!mesh->uvs)
+        return (V2){0, 0};
     const uint32_t *c = mesh->uv_corners + 3 * (size_t)triangle;
     V2 a = mesh->uvs[c[0]], b = mesh->uvs[c[1]], d = mesh->uvs[c[2]];
     double w = 1 - u - v;
     return (V2){w * a.u + u * b.u + v * d.u, w * a.v + u * b.v + v * d.v};
 }
 
-bool mesh_is_inside(const Shape *shape, V3 p)
+static bool mesh_is_inside(const Shape *shape, V3 p)
 {
     const MeshData *mesh = shape->u.mesh;
     if (!mesh->has_inside)
@@ -153,10 +167,30 @@ bool mesh_is_inside(const Shape *shape, V3 p)
     return tri_index_all(mesh->index, &ray, NULL, 0) % 2 == 1;
 }
 
-Bound mesh_bound(const Shape *shape)
+static Bound mesh_bound(const Shape *shape)
 {
     Bound b = shape->u.mesh->bound;
     if (shape->is_transformed)
         b = bound_transform(b, &shape->xform);
     return shape->rounding.is_exact ? b : bound_pad(b);
 }
+
+static V3 mesh_farthest(const Shape *shape, V3 n)
+{
+    return bound_farthest(shape->u.mesh->bound, n);
+}
+
+static double mesh_size(const Shape *shape)
+{
+    const Bound *b = &shape->u.mesh->bound;
+    return bound_is_empty(*b) ? 0 : num_max(v3_max_abs(b->lo), v3_max_abs(b->hi));
+}
+
+const ShapeOps mesh_ops = {.list = mesh_list,
+                           .closest = mesh_closest,
+                           .point = mesh_point,
+                           .uv = mesh_uv,
+                           .is_inside = mesh_is_inside,
+                           .bound = mesh_bound,
+                           .farthest = mesh_farthest,
+                           .size = mesh_size};

@@ -4,48 +4,33 @@
 
 #include "base/mem.h"
 
+const ShapeOps *shape_ops(const Shape *leaf)
+{
+    static const ShapeOps *const table[] = {
+#define LEAF(id, ops, is_solid, is_closed) [id] = &(ops),
+#define NODE(id)
+#include "shape/shape.def"
+#undef LEAF
+#undef NODE
+    };
+    return table[leaf->kind];
+}
+
 void leaf_hits(const Shape *shape, const Ray *ray, LeafHits *out)
 {
     LocalRay local;
     local_ray(shape, ray, &local);
-    switch (shape->kind) {
-    case SHAPE_SPHERE:
-        sphere_hits(shape, &local, out);
-        break;
-    case SHAPE_BOX:
-        box_hits(shape, &local, out);
-        break;
-    case SHAPE_CONE:
-        cone_hits(shape, &local, out);
-        break;
-    case SHAPE_PLANE:
-        plane_hits(shape, &local, out);
-        break;
-    case SHAPE_TORUS:
-        torus_hits(shape, &local, out);
-        break;
-    case SHAPE_DISC:
-        disc_hits(shape, &local, out);
-        break;
-    default:
-        out->count = 0;
-        out->is_inside_before = false;
-    }
+    shape_ops(shape)->hits(shape, &local, out);
 }
 
-bool leaf_list(const Shape *shape, const Ray *ray, ShapeScratch *scratch)
+bool leaf_list(const Shape *shape, const Line *line, ShapeScratch *scratch)
 {
+    const ShapeOps *ops = shape_ops(shape);
+    if (ops->list)
+        return ops->list(shape, line, scratch);
     Crossing crossing;
-    if (shape->kind == SHAPE_MESH)
-        return mesh_list(shape, ray, scratch);
-    if (shape->kind == SHAPE_TRIANGLE) {
-        Ray line = {ray->o, ray->d, -INFINITY, INFINITY};
-        if (triangle_hit(shape, &line, &crossing))
-            scratch_push(scratch, &crossing);
-        return false;
-    }
     LeafHits hits;
-    leaf_hits(shape, ray, &hits);
+    leaf_hits(shape, line->ray, &hits);
     for (int i = 0; i < hits.count; i++) {
         crossing_fill(shape, &hits.at[i], &crossing);
         scratch_push(scratch, &crossing);
@@ -53,7 +38,7 @@ bool leaf_list(const Shape *shape, const Ray *ray, ShapeScratch *scratch)
     return hits.is_inside_before;
 }
 
-static bool leaf_closest(const Shape *shape, const Ray *ray, Crossing *out)
+static bool hits_closest(const Shape *shape, const Ray *ray, Crossing *out)
 {
     LeafHits hits;
     leaf_hits(shape, ray, &hits);
@@ -93,11 +78,11 @@ static bool list_closest(const Shape *shape, const Ray *ray, ShapeScratch *scrat
 
 bool shape_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Crossing *out)
 {
-    if (shape->kind >= SHAPE_UNION || shape->clip_count)
+    const ShapeOps *ops = shape->kind < SHAPE_UNION ? shape_ops(shape) : NULL;
+    if (!ops || shape->clip_count || !(ops->hits || ops->closest))
         return list_closest(shape, ray, scratch, out);
-    bool is_hit = shape->kind == SHAPE_MESH       ? mesh_closest(shape, ray, out)
-                  : shape->kind == SHAPE_TRIANGLE ? triangle_hit(shape, ray, out)
-                                                  : leaf_closest(shape, ray, out);
+    bool is_hit =
+        ops->hits ? hits_closest(shape, ray, out) : ops->closest(shape, ray, scratch, out);
     if (is_hit && shape->is_inverted)
         crossing_invert(out);
     return is_hit;
@@ -124,37 +109,35 @@ void shape_crossings(const Shape *shape, const Ray *ray, ShapeScratch *scratch, 
 bool shape_is_solid(const Shape *shape)
 {
     static const bool is_solid[SHAPE_COUNT] = {
-#define X(id, name, solid) solid,
+#define LEAF(id, ops, is_solid, is_closed) [id] = is_solid,
+#define NODE(id) [id] = true,
 #include "shape/shape.def"
-#undef X
+#undef LEAF
+#undef NODE
     };
     if (shape->kind == SHAPE_MESH)
         return shape->u.mesh->has_inside;
     return is_solid[shape->kind];
 }
 
+bool shape_is_closed(const Shape *leaf)
+{
+    static const bool is_closed[SHAPE_COUNT] = {
+#define LEAF(id, ops, is_solid, is_closed) [id] = is_closed,
+#define NODE(id)
+#include "shape/shape.def"
+#undef LEAF
+#undef NODE
+    };
+    return is_closed[leaf->kind] && !leaf->is_open;
+}
+
 static bool leaf_is_inside(const Shape *shape, V3 p)
 {
     if (shape->is_transformed)
         p = xform_point_back(&shape->xform, p);
-    switch (shape->kind) {
-    case SHAPE_SPHERE:
-        return sphere_is_inside(shape, p);
-    case SHAPE_BOX:
-        return box_is_inside(shape, p);
-    case SHAPE_CONE:
-        return cone_is_inside(shape, p);
-    case SHAPE_PLANE:
-        return plane_is_inside(shape, p);
-    case SHAPE_TORUS:
-        return torus_is_inside(shape, p);
-    case SHAPE_DISC:
-        return disc_is_inside(shape, p);
-    case SHAPE_MESH:
-        return mesh_is_inside(shape, p);
-    default:
-        return false;
-    }
+    const ShapeOps *ops = shape_ops(shape);
+    return ops->is_inside && ops->is_inside(shape, p);
 }
 
 /* Are any (or all) of the parts around p? */
@@ -179,30 +162,6 @@ bool shape_is_inside(const Shape *shape, V3 p)
            count_inside(shape->clips, shape->clip_count, p, true);
 }
 
-/* The point of a solid primitive, in its own space. */
-static void leaf_point(const Shape *leaf, uint32_t part, V3 p, LocalPoint *out)
-{
-    switch (leaf->kind) {
-    case SHAPE_SPHERE:
-        sphere_point(leaf, p, out);
-        break;
-    case SHAPE_BOX:
-        box_point(leaf, part, p, out);
-        break;
-    case SHAPE_CONE:
-        cone_point(leaf, part, p, out);
-        break;
-    case SHAPE_PLANE:
-        plane_point(leaf, p, out);
-        break;
-    case SHAPE_TORUS:
-        torus_point(leaf, part, p, out);
-        break;
-    default:
-        disc_point(leaf, p, out);
-    }
-}
-
 /* Bound how far, in scene units, rounding takes a point from where the shape sees it. */
 static double world_error(const Shape *leaf, V3 p, double local_error)
 {
@@ -213,44 +172,31 @@ static double world_error(const Shape *leaf, V3 p, double local_error)
     return v3_dot(local, r->column) + 4 * EPS_DOUBLE * size;
 }
 
-static void to_world(const Crossing *c, V3 p, double error, ShapePoint *out)
+static void to_world(const Shape *leaf, const LocalPoint *local, ShapePoint *out)
 {
-    const Shape *leaf = c->leaf;
-    out->p = leaf->is_transformed ? xform_point(&leaf->xform, p) : p;
+    out->p = leaf->is_transformed ? xform_point(&leaf->xform, local->p) : local->p;
+    out->ng = local->ng;
+    out->ns = local->is_smooth ? local->ns : local->ng;
     if (leaf->rounding.is_exact) {
         double scale = leaf->xform.to[0][0];
-        out->p_error = 2 * scale * error + 8 * EPS_DOUBLE * v3_sum_abs(out->p);
-    } else {
-        out->ng = v3_unit(xform_normal(&leaf->xform, out->ng));
-        out->ns = v3_unit(xform_normal(&leaf->xform, out->ns));
-        out->p_error = world_error(leaf, out->p, error);
+        out->p_error = 2 * scale * local->error + 8 * EPS_DOUBLE * v3_sum_abs(out->p);
+        return;
     }
+    out->p_error = world_error(leaf, out->p, local->error);
+    out->ng = v3_unit(xform_normal(&leaf->xform, out->ng));
+    out->ns = local->is_smooth ? v3_unit(xform_normal(&leaf->xform, out->ns)) : out->ng;
 }
 
 void shape_point(const Crossing *crossing, const Ray *ray, ShapePoint *out)
 {
     const Shape *leaf = crossing->leaf;
     V3 p = ray_at(ray, crossing->t);
+    LocalPoint local = {.is_smooth = false};
+    if (leaf->is_transformed)
+        p = xform_point_back(&leaf->xform, p);
+    shape_ops(leaf)->point(leaf, crossing, p, &local);
+    to_world(leaf, &local, out);
     out->has_inside = shape_is_solid(leaf);
-    if (leaf->kind == SHAPE_TRIANGLE) {
-        triangle_point(leaf, crossing, p, out);
-        to_world(crossing, out->p, out->p_error, out);
-    } else if (leaf->kind == SHAPE_MESH) {
-        mesh_point(leaf, crossing, p, out);
-        out->ng = v3_unit(out->ng);
-        out->ns = v3_unit(out->ns);
-        to_world(crossing, out->p, out->p_error, out);
-    } else {
-        LocalPoint local;
-        if (leaf->is_transformed)
-            p = xform_point_back(&leaf->xform, p);
-        leaf_point(leaf, crossing->part, p, &local);
-        out->ng = out->ns = local.n;
-        to_world(crossing, local.p, local.error, out);
-        if (leaf->rounding.is_exact && leaf->kind == SHAPE_TORUS)
-            out->ng = v3_unit(out->ng);
-        out->ns = out->ng;
-    }
     if (crossing->is_flipped) {
         out->ng = v3_neg(out->ng);
         out->ns = v3_neg(out->ns);
@@ -259,22 +205,10 @@ void shape_point(const Crossing *crossing, const Ray *ray, ShapePoint *out)
 
 V2 shape_uv(const Shape *leaf, uint32_t part, double u, double v, V3 p)
 {
-    V3 local = leaf->is_transformed ? xform_point_back(&leaf->xform, p) : p;
-    switch (leaf->kind) {
-    case SHAPE_SPHERE:
-        return sphere_uv(leaf, local);
-    case SHAPE_BOX:
-        return box_uv(leaf, part, local);
-    case SHAPE_TORUS:
-        return torus_uv(leaf, local);
-    case SHAPE_MESH:
-        if (leaf->u.mesh->uvs)
-            return mesh_uv(leaf, part, u, v);
-        break;
-    default:
-        break;
-    }
-    return (V2){p.x, p.y}; /* the language's way: the world's x and y */
+    const ShapeOps *ops = shape_ops(leaf);
+    if (!ops->uv)
+        return (V2){p.x, p.y}; /* the language's way: the world's x and y */
+    return ops->uv(leaf, part, u, v, leaf->is_transformed ? xform_point_back(&leaf->xform, p) : p);
 }
 
 ShapeScratch *shape_scratch_new(void)

@@ -24,9 +24,11 @@
 #include <stdint.h>
 
 typedef enum ShapeKind {
-#define X(id, name, is_solid) id,
+#define LEAF(id, ops, is_solid, is_closed) id,
+#define NODE(id) id,
 #include "shape/shape.def"
-#undef X
+#undef LEAF
+#undef NODE
     SHAPE_COUNT
 } ShapeKind;
 
@@ -55,7 +57,6 @@ typedef struct ConeParams {
     double bottom,
         top;       /* radii at z = 0 and z = height, both >= 0; a cylinder has two equal ones */
     double height; /* > 0 */
-    bool is_open;  /* no caps */
 } ConeParams;
 
 typedef struct TorusParams {
@@ -85,6 +86,7 @@ struct Shape {
     ShapeKind kind;
     bool is_inverted;
     bool is_transformed; /* xform is not the identity */
+    bool is_open;        /* of a leaf: it has no caps, though they bound it */
     uint32_t surface;    /* of a leaf: which Surface of the scene it shows */
     Xform xform;         /* of a leaf: object space to world space */
     union {
@@ -104,6 +106,7 @@ struct Shape {
     int clip_count;
     ShapeRounding rounding;
     bool is_finished;      /* the fields below are set: shape_finish */
+    bool is_bounded;       /* a leaf whose surface, unclipped, is within a finite box */
     bool is_convex_leaf;   /* every line is inside it along one stretch */
     int convex_count;      /* convex leaves among the children of an intersection */
     bool is_inside_beyond; /* what lies outside `reach` is inside the solid */
@@ -180,6 +183,9 @@ void shape_finish(Arena *arena, Shape *shape);
 /* --- asking (any thread) ---------------------------------------------------------------- */
 
 bool shape_is_solid(const Shape *shape);
+
+/* Return whether a leaf is a solid that its visible surface alone bounds. */
+bool shape_is_closed(const Shape *leaf);
 
 /* List every crossing of the whole line of `ray` (tmin and tmax are ignored), for solids and
  * CSG.  The list is replaced. */

@@ -5,30 +5,6 @@
  * that misses it needs no list.  SPDX-License-Identifier: Apache-2.0 */
 #include "shape/shape_int.h"
 
-static Bound leaf_bound(const Shape *shape)
-{
-    switch (shape->kind) {
-    case SHAPE_SPHERE:
-        return sphere_bound(shape);
-    case SHAPE_BOX:
-        return box_bound(shape);
-    case SHAPE_CONE:
-        return cone_bound(shape);
-    case SHAPE_PLANE:
-        return plane_bound(shape, false);
-    case SHAPE_TORUS:
-        return torus_bound(shape);
-    case SHAPE_DISC:
-        return disc_bound(shape);
-    case SHAPE_TRIANGLE:
-        return triangle_bound(shape);
-    case SHAPE_MESH:
-        return mesh_bound(shape);
-    default:
-        return BOUND_ALL;
-    }
-}
-
 /* Narrow `box` to the reach of what all `parts` must contain; returns false if one of them is
  * not inside beyond its reach, and then the box is as narrow as they say. */
 static void narrow_to(Shape *const *parts, int count, Bound *box, bool *is_inside_beyond)
@@ -70,10 +46,10 @@ static Bound union_reach(const Shape *shape, bool *is_inside_beyond)
 
 static Bound plane_reach(const Shape *shape)
 {
-    Shape plane = *shape;
+    PlaneParams plane = shape->u.plane;
     if (shape->is_inverted)
-        plane.u.plane = (PlaneParams){v3_neg(shape->u.plane.normal), -shape->u.plane.distance};
-    return plane_bound(&plane, true);
+        plane = (PlaneParams){v3_neg(plane.normal), -plane.distance};
+    return plane_inside_bound(&plane);
 }
 
 Bound shape_reach(const Shape *shape, bool *is_inside_beyond)
@@ -87,7 +63,7 @@ Bound shape_reach(const Shape *shape, bool *is_inside_beyond)
     else if (shape->kind >= SHAPE_UNION)
         box = union_reach(shape, is_inside_beyond);
     else
-        box = shape->kind == SHAPE_DISC ? BOUND_ALL : leaf_bound(shape);
+        box = shape->kind == SHAPE_DISC ? BOUND_ALL : shape_ops(shape)->bound(shape);
     if (shape->kind == SHAPE_PLANE) /* half the world: nothing beyond is inside */
         box = plane_reach(shape);
     else if (shape->is_inverted)
@@ -110,7 +86,7 @@ Bound shape_bound(const Shape *shape)
     bool beyond;
     Bound seen = BOUND_EMPTY, reach = shape_reach(shape, &beyond);
     if (shape->kind < SHAPE_UNION)
-        return bound_intersect(leaf_bound(shape), reach);
+        return bound_intersect(shape_ops(shape)->bound(shape), reach);
     for (int i = 0; i < shape->child_count; i++)
         seen = bound_union(seen, shape_bound(shape->children[i]));
     return bound_intersect(seen, reach);

@@ -37,9 +37,59 @@ typedef struct LeafHits {
 
 /* A point in the space of a leaf, pulled onto its surface. */
 typedef struct LocalPoint {
-    V3 p, n;      /* n: outward, any length */
+    V3 p, ng;     /* ng: outward, unit */
+    V3 ns;        /* if is_smooth: interpolated, unit, on the side of ng */
     double error; /* bound on the distance from the surface, rounding of p alone */
+    bool is_smooth;
 } LocalPoint;
+
+typedef struct Line Line;
+
+/* What a kind of leaf can do: those that may be NULL say so.  Points and normals are in the space
+ * of the leaf. */
+typedef struct ShapeOps {
+    /* List the crossings of a line, ascending, before any inversion: kinds that have few. */
+    void (*hits)(const Shape *leaf, const LocalRay *ray, LeafHits *out);
+
+    /* The same for kinds without `hits`: push them; returns whether the line starts inside. */
+    bool (*list)(const Shape *leaf, const Line *line, ShapeScratch *scratch);
+
+    /* Find the first visible crossing with tmin < t < tmax, before any inversion.  NULL: the first
+     * of the list. */
+    bool (*closest)(const Shape *leaf, const Ray *ray, ShapeScratch *scratch, Crossing *out);
+
+    /* Pull the point p of a crossing onto the surface. */
+    void (*point)(const Shape *leaf, const Crossing *crossing, V3 p, LocalPoint *out);
+
+    /* Return the language's uv; u and v are a crossing's.  NULL: the world's x and y. */
+    V2 (*uv)(const Shape *leaf, uint32_t part, double u, double v, V3 p);
+
+    /* NULL: nothing is inside. */
+    bool (*is_inside)(const Shape *leaf, V3 p);
+
+    /* Return a box in world space around the surface. */
+    Bound (*bound)(const Shape *leaf);
+
+    /* Return the point for which n . p is largest, up to rounding.  NULL: of the box around it. */
+    V3 (*farthest)(const Shape *leaf, V3 n);
+
+    /* Return the magnitude of the numbers that place the form in its space.  NULL: the kind allows
+     * for their rounding by itself. */
+    double (*size)(const Shape *leaf);
+
+    /* Fold a transform into the numbers of the form; false when they cannot take it.  NULL: never.
+     */
+    bool (*transform)(Shape *leaf, const Xform *xform);
+} ShapeOps;
+
+#define LEAF(id, ops, is_solid, is_closed) extern const ShapeOps ops;
+#define NODE(id)
+#include "shape/shape.def"
+#undef LEAF
+#undef NODE
+
+/* Return the operations of a leaf. */
+const ShapeOps *shape_ops(const Shape *leaf);
 
 static inline double v3_sum_abs(V3 a)
 {
@@ -80,52 +130,31 @@ static inline V3 local_error(const LocalRay *ray, double t)
                   4 * EPS_DOUBLE * (fabs(ray->o.z) + t * fabs(ray->d.z)));
 }
 
-/* Per kind: the crossings, and the point of one.  They may assume a leaf of their kind. */
-void sphere_hits(const Shape *shape, const LocalRay *ray, LeafHits *out);
+/* Return the point of a box that is furthest along n, and that of a circle around the z axis. */
+V3 bound_farthest(Bound box, V3 n);
+V3 circle_farthest(double radius, double z, V3 n);
+
+/* Return whether a ray meets a sphere with tmin < t < tmax. */
 bool sphere_is_met(const Shape *shape, const LocalRay *ray, double tmin, double tmax);
-void sphere_point(const Shape *shape, V3 p, LocalPoint *out);
-V2 sphere_uv(const Shape *shape, V3 p);
-bool sphere_is_inside(const Shape *shape, V3 p);
-Bound sphere_bound(const Shape *shape);
 
-void box_hits(const Shape *shape, const LocalRay *ray, LeafHits *out);
-void box_point(const Shape *shape, uint32_t part, V3 p, LocalPoint *out);
-V2 box_uv(const Shape *shape, uint32_t part, V3 p);
-bool box_is_inside(const Shape *shape, V3 p);
-Bound box_bound(const Shape *shape);
+/* Return the box around a plane's inside. */
+Bound plane_inside_bound(const PlaneParams *plane);
 
-void cone_hits(const Shape *shape, const LocalRay *ray, LeafHits *out);
-void cone_point(const Shape *shape, uint32_t part, V3 p, LocalPoint *out);
-bool cone_is_inside(const Shape *shape, V3 p);
-Bound cone_bound(const Shape *shape);
+/* Make a leaf whose parameters are still to be filled in, or NULL. */
+Shape *leaf_new(Arena *arena, ShapeKind kind);
 
-void plane_hits(const Shape *shape, const LocalRay *ray, LeafHits *out);
-void plane_point(const Shape *shape, V3 p, LocalPoint *out);
-bool plane_is_inside(const Shape *shape, V3 p);
-/* is_solid: around the inside, else around the surface. */
-Bound plane_bound(const Shape *shape, bool is_solid);
+/* Place a leaf, and derive what its numbers say about their rounding. */
+void leaf_place(Shape *leaf, const Xform *xform);
 
-void torus_hits(const Shape *shape, const LocalRay *ray, LeafHits *out);
-void torus_point(const Shape *shape, uint32_t part, V3 p, LocalPoint *out);
-V2 torus_uv(const Shape *shape, V3 p);
-bool torus_is_inside(const Shape *shape, V3 p);
-Bound torus_bound(const Shape *shape);
+/* Is this a scaling along the axes, by positive factors, and a move? */
+bool xform_is_plain(const Xform *x);
 
-void disc_hits(const Shape *shape, const LocalRay *ray, LeafHits *out);
-void disc_point(const Shape *shape, V3 p, LocalPoint *out);
-bool disc_is_inside(const Shape *shape, V3 p);
-Bound disc_bound(const Shape *shape);
+/* Scaling alike in all directions leaves normals as they are, to the last bit: making them unit
+ * again would not. */
+bool xform_keeps_normals(const Xform *x);
 
-/* Triangles live in world space; u and v are barycentrics. */
-bool triangle_hit(const Shape *shape, const Ray *ray, Crossing *out);
-void triangle_point(const Shape *shape, const Crossing *crossing, V3 p, ShapePoint *out);
-Bound triangle_bound(const Shape *shape);
-
-bool mesh_closest(const Shape *shape, const Ray *ray, Crossing *out);
-void mesh_point(const Shape *shape, const Crossing *crossing, V3 p, ShapePoint *out);
-V2 mesh_uv(const Shape *shape, uint32_t triangle, double u, double v);
-bool mesh_is_inside(const Shape *shape, V3 p);
-Bound mesh_bound(const Shape *shape);
+/* Turn a unit normal. */
+V3 turn_normal(V3 n, const Xform *x);
 
 /* Enlarge a box by the rounding of the numbers it was made of. */
 static inline Bound bound_pad(Bound b)
@@ -136,11 +165,11 @@ static inline Bound bound_pad(Bound b)
 
 /* The part of a ray's line whose crossings are wanted: what happens outside [near, far] may be
  * told wrong. */
-typedef struct Line {
+struct Line {
     const Ray *ray;
     V3 inverse; /* of the direction */
     double near, far;
-} Line;
+};
 
 /* Move a t that is exact to a few of its own ulps to where it is early for sure. */
 static inline double earlier(double t)
@@ -191,7 +220,7 @@ struct ShapeScratch {
  * so. */
 void scratch_push(ShapeScratch *scratch, const Crossing *crossing);
 
-/* Find the crossings of a solid leaf that is not a mesh and a line, before any inversion. */
+/* Find the crossings of a leaf that has few, before any inversion. */
 void leaf_hits(const Shape *shape, const Ray *ray, LeafHits *out);
 
 /* One end of the core: a hit of the child that lends it its look, and where the hits of all
@@ -222,10 +251,9 @@ bool convex_core(const Shape *node, const Ray *ray, double near, double far, Con
 /* Push an end of the core as a crossing of child `slot`. */
 void convex_push(const ConvexEnd *end, uint32_t slot, ShapeScratch *scratch);
 
-/* Push the crossings of a leaf or of a mesh, without inversion and clips; returns whether the
- * line starts inside. */
-bool leaf_list(const Shape *shape, const Ray *ray, ShapeScratch *scratch);
-bool mesh_list(const Shape *shape, const Ray *ray, ShapeScratch *scratch);
+/* Push the crossings of a leaf, without inversion and clips; returns whether the line starts
+ * inside. */
+bool leaf_list(const Shape *shape, const Line *line, ShapeScratch *scratch);
 
 /* Push the crossings of any shape along a line, inversion and clips applied; returns whether the
  * line starts inside. */

@@ -4,6 +4,16 @@
  * cancels however far the ray starts away.  SPDX-License-Identifier: Apache-2.0 */
 #include "shape/shape_int.h"
 
+Shape *shape_sphere(Arena *arena, V3 center, double radius)
+{
+    Shape *shape = leaf_new(arena, SHAPE_SPHERE);
+    if (!shape)
+        return NULL;
+    shape->u.sphere = (SphereParams){center, radius};
+    leaf_place(shape, &XFORM_IDENTITY);
+    return shape;
+}
+
 /* The chord of a line in a sphere. */
 typedef struct Chord {
     double middle, half2; /* t, and half its length squared; not above 0: there is none */
@@ -35,7 +45,7 @@ bool sphere_is_met(const Shape *shape, const LocalRay *ray, double tmin, double 
            (ends_behind && (ahead > 0 || ahead * ahead < chord.half2));
 }
 
-void sphere_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
+static void sphere_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
 {
     double r = shape->u.sphere.radius;
     Chord chord = find_chord(&shape->u.sphere, ray);
@@ -58,29 +68,31 @@ void sphere_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
     out->at[1] = (LeafHit){middle + half, error, 0, -1, true};
 }
 
-void sphere_point(const Shape *shape, V3 p, LocalPoint *out)
+static void sphere_point(const Shape *shape, const Crossing *crossing, V3 p, LocalPoint *out)
 {
     double r = shape->u.sphere.radius;
     V3 n = v3_unit(v3_sub(p, shape->u.sphere.center));
+    (void)crossing;
     out->p = v3_mad(shape->u.sphere.center, r, n);
-    out->n = n;
+    out->ng = n;
     out->error = shape->rounding.place + 8 * EPS_DOUBLE * r;
 }
 
-V2 sphere_uv(const Shape *shape, V3 p)
+static V2 sphere_uv(const Shape *shape, uint32_t part, double u, double v, V3 p)
 {
+    (void)part, (void)u, (void)v;
     V3 n = v3_unit(v3_sub(p, shape->u.sphere.center));
     double turn = atan2(n.z, n.x) / (2 * PMS_PI);
     return (V2){turn < 0 ? turn + 1 : turn, 0.5 + asin(num_max(-1, num_min(1, n.y))) / PMS_PI};
 }
 
-bool sphere_is_inside(const Shape *shape, V3 p)
+static bool sphere_is_inside(const Shape *shape, V3 p)
 {
     double r = shape->u.sphere.radius;
     return v3_len2(v3_sub(p, shape->u.sphere.center)) < r * r;
 }
 
-Bound sphere_bound(const Shape *shape)
+static Bound sphere_bound(const Shape *shape)
 {
     double r = shape->u.sphere.radius;
     V3 c = shape->u.sphere.center, half = v3(r, r, r);
@@ -94,3 +106,31 @@ Bound sphere_bound(const Shape *shape)
     }
     return bound_pad((Bound){v3_sub(c, half), v3_add(c, half)});
 }
+
+static V3 sphere_farthest(const Shape *shape, V3 n)
+{
+    return v3_mad(shape->u.sphere.center, shape->u.sphere.radius, v3_unit(n));
+}
+
+static double sphere_size(const Shape *shape)
+{
+    return v3_sum_abs(shape->u.sphere.center) + shape->u.sphere.radius;
+}
+
+static bool sphere_transform(Shape *shape, const Xform *x)
+{
+    if (shape->is_transformed || !xform_is_plain(x) || !xform_keeps_normals(x))
+        return false;
+    shape->u.sphere.center = xform_point(x, shape->u.sphere.center);
+    shape->u.sphere.radius *= x->to[0][0];
+    return true;
+}
+
+const ShapeOps sphere_ops = {.hits = sphere_hits,
+                             .point = sphere_point,
+                             .uv = sphere_uv,
+                             .is_inside = sphere_is_inside,
+                             .bound = sphere_bound,
+                             .farthest = sphere_farthest,
+                             .size = sphere_size,
+                             .transform = sphere_transform};

@@ -8,6 +8,16 @@
 #include "math/roots.h"
 #include "shape/shape_int.h"
 
+Shape *shape_torus(Arena *arena, double major, double minor)
+{
+    Shape *shape = leaf_new(arena, SHAPE_TORUS);
+    if (!shape)
+        return NULL;
+    shape->u.torus = (TorusParams){major, minor};
+    leaf_place(shape, &XFORM_IDENTITY);
+    return shape;
+}
+
 /* The line in units of length about its middle point f. */
 typedef struct TorusLine {
     V3 f, e; /* e unit */
@@ -111,7 +121,7 @@ static void sort_hits(LeafHits *hits)
     }
 }
 
-void torus_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
+static void torus_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
 {
     TorusLine l = {.major = shape->u.torus.major, .minor = shape->u.torus.minor, .side = 1};
     out->count = 0;
@@ -144,32 +154,34 @@ void torus_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
     }
 }
 
-void torus_point(const Shape *shape, uint32_t part, V3 p, LocalPoint *out)
+static void torus_point(const Shape *shape, const Crossing *crossing, V3 p, LocalPoint *out)
 {
+    uint32_t part = crossing->part;
     double major = shape->u.torus.major, minor = shape->u.torus.minor;
     double rho = sqrt(p.x * p.x + p.z * p.z);
     double to_ring = rho > 0 ? (part ? -major : major) / rho : 0;
     V3 ring = v3(p.x * to_ring, 0, p.z * to_ring);
     V3 n = v3_unit(v3_sub(p, ring));
     out->p = rho > 0 ? v3_mad(ring, minor, n) : p;
-    out->n = part ? v3_neg(n) : n;
+    out->ng = part ? v3_neg(n) : n;
     out->error = 2 * PLACE_EPS * (major + minor);
 }
 
-V2 torus_uv(const Shape *shape, V3 p)
+static V2 torus_uv(const Shape *shape, uint32_t part, double u, double v, V3 p)
 {
+    (void)part, (void)u, (void)v;
     double rho = sqrt(p.x * p.x + p.z * p.z);
     return (V2){1 - (atan2(p.z, p.x) + PMS_PI) / (2 * PMS_PI),
                 (atan2(p.y, rho - shape->u.torus.major) + PMS_PI) / (2 * PMS_PI)};
 }
 
-bool torus_is_inside(const Shape *shape, V3 p)
+static bool torus_is_inside(const Shape *shape, V3 p)
 {
     double w = sqrt(p.x * p.x + p.z * p.z) - shape->u.torus.major, r = shape->u.torus.minor;
     return w * w + p.y * p.y <= r * r;
 }
 
-Bound torus_bound(const Shape *shape)
+static Bound torus_bound(const Shape *shape)
 {
     /* The ring's box, grown by the tube's ball. */
     const double(*m)[4] = shape->xform.to;
@@ -180,3 +192,16 @@ Bound torus_bound(const Shape *shape)
     half.z = major * hypot(m[2][0], m[2][2]) + minor * v3_len(v3(m[2][0], m[2][1], m[2][2]));
     return bound_pad((Bound){v3_sub(c, half), v3_add(c, half)});
 }
+
+static V3 torus_farthest(const Shape *shape, V3 n)
+{
+    V3 ring = circle_farthest(shape->u.torus.major, 0, v3(n.z, n.x, n.y));
+    return v3_mad(v3(ring.y, ring.z, ring.x), shape->u.torus.minor, v3_unit(n));
+}
+
+const ShapeOps torus_ops = {.hits = torus_hits,
+                            .point = torus_point,
+                            .uv = torus_uv,
+                            .is_inside = torus_is_inside,
+                            .bound = torus_bound,
+                            .farthest = torus_farthest};

@@ -129,6 +129,14 @@ static Side disc_side(const LocalHull *h)
     return h->apex.z < 0 && h->center.z + h->reach.z < 0 ? SIDE_INSIDE : SIDE_TOUCHES;
 }
 
+static Side world_box_side(const Hull *hull, const Shape *shape)
+{
+    double r = hull->radius;
+    LocalHull world = {hull->apex, hull->center, v3(r, r, r)};
+    Bound box = shape_bound(shape);
+    return around_side(&world, box.lo, box.hi);
+}
+
 static Side leaf_side(const Hull *hull, const Shape *shape)
 {
     if (shape->kind == SHAPE_PLANE)
@@ -152,7 +160,7 @@ static Side leaf_side(const Hull *hull, const Shape *shape)
     case SHAPE_MESH:
         return around_side(&local, shape->u.mesh->bound.lo, shape->u.mesh->bound.hi);
     default:
-        return SIDE_TOUCHES;
+        return world_box_side(hull, shape);
     }
 }
 

@@ -215,7 +215,8 @@ static bool is_leaf_missed(const ShadowFace *face, const Cell *cell, const Shape
 /* Is the inside of a solid, not turned inside out, all between its surfaces? */
 static bool is_between_surfaces(const Shape *solid)
 {
-    if (solid->is_inverted || solid->kind == SHAPE_PLANE || solid->kind == SHAPE_DISC)
+    bool is_leaf = solid->kind < SHAPE_UNION;
+    if (solid->is_inverted || (is_leaf && (!solid->is_bounded || solid->kind == SHAPE_DISC)))
         return false;
     for (int i = 0; i < solid->child_count; i++) {
         bool is_child = is_between_surfaces(solid->children[i]);
@@ -228,8 +229,6 @@ static bool is_between_surfaces(const Shape *solid)
 bool part_is_missed(const ShadowFace *face, const Cell *cell, const Shape *shape)
 {
     switch (shape->kind) {
-    case SHAPE_PLANE:
-        return false;
     case SHAPE_UNION:
     case SHAPE_MERGE:
         for (int i = 0; i < shape->child_count; i++)
@@ -244,7 +243,7 @@ bool part_is_missed(const ShadowFace *face, const Cell *cell, const Shape *shape
         }
         return false;
     default:
-        return is_leaf_missed(face, cell, shape);
+        return shape->is_bounded && is_leaf_missed(face, cell, shape);
     }
 }
 
@@ -492,7 +491,7 @@ bool part_edge(const Sight *sight, const Cell *cell, const Part *part, ShadowEdg
     Filled filled;
     const Shape *shape = part->shape;
     bool is_simple = part->is_opaque && part->is_convex && !part->is_at_lamp &&
-                     shape->kind < SHAPE_UNION && shape->kind != SHAPE_PLANE;
+                     shape->kind < SHAPE_UNION && shape->is_bounded;
     if (!is_simple || may_begin_inside(sight, part) || !find_filled(sight, cell, part, &filled))
         return false;
     V2 n;

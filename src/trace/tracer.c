@@ -27,21 +27,6 @@ static bool is_refracting_target(const Surface *surface)
     return surface->is_target && surface->photons.refraction == TRI_ON;
 }
 
-static bool is_closed_leaf(const Shape *leaf)
-{
-    switch (leaf->kind) {
-    case SHAPE_SPHERE:
-    case SHAPE_BOX:
-    case SHAPE_PLANE:
-    case SHAPE_TORUS:
-        return true;
-    case SHAPE_CONE:
-        return !leaf->u.cone.is_open;
-    default:
-        return false;
-    }
-}
-
 static void summarize(const Tracer *tracer, const Shape *shape, LeafSummary *sum)
 {
     if (shape->clip_count > 0)
@@ -51,7 +36,7 @@ static void summarize(const Tracer *tracer, const Shape *shape, LeafSummary *sum
     if (shape->kind >= SHAPE_UNION)
         return;
     const Surface *surface = &tracer->scene->surfaces[shape->surface];
-    sum->is_closed &= is_closed_leaf(shape);
+    sum->is_closed &= shape_is_closed(shape);
     bool is_filter = plan_filters_shadow(tracer->plan, surface);
     sum->has_filter |= is_filter;
     sum->has_filter_besides_targets |= is_filter && !is_refracting_target(surface);
