@@ -61,6 +61,11 @@ bool tri_index_closest(const TriIndex *index, const Ray *ray, TriHit *out);
 /* Test one triangle as the index does; `triangle` of the hit is 0. */
 bool tri_test(const V3 corner[3], const Ray *ray, TriHit *out);
 
+/* Return whether the line of a ray passes through loops of points, filled even-odd: point i is
+ * joined to point next[i], and every point ends two edges.  Watertight like tri_test, of which
+ * it has the rule for edges. */
+bool loops_hold(const V3 *points, const uint32_t *next, uint32_t count, const Ray *ray);
+
 /* Find all triangles along (tmin, tmax), ascending in t, at most `capacity`; returns how many
  * there are (may exceed capacity). */
 int tri_index_all(const TriIndex *index, const Ray *ray, TriHit *out, int capacity);

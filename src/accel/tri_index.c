@@ -249,6 +249,21 @@ bool tri_test(const V3 corner[3], const Ray *ray, TriHit *out)
     return sheared_test(&shear, &corner[0], &corner[1], &corner[2], ray->tmin, ray->tmax, out);
 }
 
+bool loops_hold(const V3 *points, const uint32_t *next, uint32_t count, const Ray *ray)
+{
+    Shear shear;
+    bool is_inside = false;
+    shear_init(&shear, ray, 0);
+    for (uint32_t i = 0; i < count; i++) {
+        Sheared a = shear_point(&shear, points[i]), b = shear_point(&shear, points[next[i]]);
+        /* The ray is moved a little up, too: a point at its height is below it. */
+        bool is_up = b.y > 0;
+        if ((a.y > 0) != is_up)
+            is_inside ^= is_left(edge(a, b), a, b) == is_up;
+    }
+    return is_inside;
+}
+
 static int compare_hits(const void *a, const void *b)
 {
     const TriHit *p = a, *q = b;

@@ -64,6 +64,7 @@ Node *read_plane(Parser *p);
 Node *read_disc(Parser *p);
 Node *read_triangle(Parser *p);
 Node *read_smooth_triangle(Parser *p);
+Node *read_polygon(Parser *p);
 Node *read_mesh(Parser *p);
 Node *read_mesh2(Parser *p);
 Node *read_union(Parser *p);

@@ -34,6 +34,7 @@ typedef enum ShapeKind {
 
 typedef struct Shape Shape;
 typedef struct MeshData MeshData;
+typedef struct PolygonData PolygonData;
 typedef struct ReachBlock ReachBlock;
 typedef struct PlaneBlock PlaneBlock;
 
@@ -97,7 +98,8 @@ struct Shape {
         TorusParams torus;
         DiscParams disc;
         TriangleParams triangle;
-        const MeshData *mesh; /* shared between instances */
+        const MeshData *mesh; /* shared between instances, like those below */
+        const PolygonData *polygon;
     } u;
     Shape **children; /* of a CSG node; difference is an intersection with inverted ones */
     int child_count;
@@ -163,6 +165,7 @@ Shape *shape_torus(Arena *arena, double major, double minor);
 Shape *shape_disc(Arena *arena, V3 center, V3 normal, double radius, double hole);
 Shape *shape_triangle(Arena *arena, const V3 corner[3], const V3 *normal_or_null);
 Shape *shape_mesh(Arena *arena, const MeshData *mesh); /* after mesh_index */
+Shape *shape_polygon(Arena *arena, const PolygonData *data); /* after polygon_prepare, if flat */
 /* kind: SHAPE_UNION, SHAPE_MERGE or SHAPE_INTERSECTION; children are borrowed. */
 Shape *shape_csg(Arena *arena, ShapeKind kind, Shape **children, int child_count);
 
