@@ -1,11 +1,12 @@
-/* An index over triangles: Embree finds the boxes of the triangles, the test is ours.
+/* An index over triangles: Embree, or for a small mesh a tree of ours, finds the
+ * boxes of the triangles; the test is ours.
  *
  * The test shears space so that the ray becomes the z axis and asks on which side of each edge
  * the ray passes.  The sign of an edge function is exact for the sheared points, the same for
  * both triangles at an edge, and an exact zero is decided as if the ray were moved by an
  * infinitesimal step; so a line meets exactly one of the triangles around an edge or a corner
  * on each side of a closed mesh.  SPDX-License-Identifier: Apache-2.0 */
-#include "accel/frame_int.h"
+#include "accel/tri_tree_int.h"
 
 #include "base/mem.h"
 
@@ -14,7 +15,8 @@
 
 struct TriIndex {
     IndexFrame frame;
-    FrameScene scene;
+    FrameScene scene; /* of a big mesh */
+    TriTree tree;     /* of a small one */
     const V3 *vertices;
     const uint32_t *corners;
     uint32_t count;
@@ -150,14 +152,24 @@ static bool offer(TriQuery *q, uint32_t triangle)
     return true;
 }
 
-static void triangle_bounds(const struct RTCBoundsFunctionArguments *args)
+static void box_of(const TriIndex *index, uint32_t triangle, struct RTCBounds *out)
 {
-    const TriIndex *index = args->geometryUserPtr;
-    const uint32_t *c = index->corners + 3 * (size_t)args->primID;
+    const uint32_t *c = index->corners + 3 * (size_t)triangle;
     Bound box = BOUND_EMPTY;
     for (int i = 0; i < 3; i++)
         box = bound_add(box, index->vertices[c[i]]);
-    frame_box(&index->frame, box, args->bounds_o);
+    frame_box(&index->frame, box, out);
+}
+
+static void triangle_bounds(const struct RTCBoundsFunctionArguments *args)
+{
+    box_of(args->geometryUserPtr, args->primID, args->bounds_o);
+}
+
+static float offer_of_tree(void *query, uint32_t triangle, float far)
+{
+    TriQuery *q = query;
+    return offer(q, triangle) ? frame_end(&q->at, q->best.t) : far;
 }
 
 static void triangle_intersect(const struct RTCIntersectFunctionNArguments *args)
@@ -166,6 +178,18 @@ static void triangle_intersect(const struct RTCIntersectFunctionNArguments *args
     assert(args->N == 1);
     if (offer(q, args->primID))
         ((struct RTCRayHit *)args->rayhit)->ray.tfar = frame_end(&q->at, q->best.t);
+}
+
+static Status make_tree(Diag *diag, TriIndex *index)
+{
+    struct RTCBounds *boxes = mem_array(index->count, sizeof *boxes);
+    if (!boxes)
+        return diag_no_memory(diag, "the index of a mesh");
+    for (uint32_t i = 0; i < index->count; i++)
+        box_of(index, i, &boxes[i]);
+    Status status = tri_tree_init(diag, boxes, index->count, &index->tree);
+    mem_free(boxes);
+    return status;
 }
 
 /* Corner numbers out of range or vertices that are not numbers would break the index. */
@@ -201,7 +225,9 @@ Status tri_index_new(Diag *diag, const V3 *vertices, uint32_t vertex_count, cons
         return OK;
     index->frame = frame_of(all);
     static const FrameCallbacks calls = {triangle_bounds, triangle_intersect, NULL};
-    Status status = frame_scene_new(diag, triangle_count, threads, &calls, index, &index->scene);
+    Status status = triangle_count <= TRI_TREE_MAX ? make_tree(diag, index)
+                                                   : frame_scene_new(diag, triangle_count, threads,
+                                                                     &calls, index, &index->scene);
     if (status != OK) {
         tri_index_free(index);
         *out = NULL;
@@ -214,6 +240,7 @@ void tri_index_free(TriIndex *index)
     if (!index)
         return;
     frame_scene_done(&index->scene);
+    tri_tree_done(&index->tree);
     mem_free(index);
 }
 
@@ -228,6 +255,10 @@ static void run(const TriIndex *index, const Ray *ray, TriQuery *q)
     /* The arithmetic depends on the line alone, not on the part asked for: who walks along a
      * line from hit to hit gets the same t for a triangle every time, and never meets it twice. */
     shear_init(&q->shear, ray, q->at.line_start);
+    if (index->tree.nodes) {
+        tri_tree_walk(&index->tree, &q->at.hit.ray, offer_of_tree, q);
+        return;
+    }
     rtcInitIntersectContext(&q->context);
     rtcIntersect1(index->scene.scene, &q->context, &q->at.hit);
 }

@@ -54,6 +54,9 @@ Node *read_object_block(Parser *p);
 Node *read_leaf(Parser *p, const Shape *shape);
 Node *read_empty(Parser *p);
 
+/* Index a mesh and make its leaf. */
+Node *read_mesh_leaf(Parser *p, MeshData *mesh);
+
 /* The parameters between a shape's brace and its modifiers. */
 Node *read_sphere(Parser *p);
 Node *read_box(Parser *p);
@@ -65,6 +68,7 @@ Node *read_disc(Parser *p);
 Node *read_triangle(Parser *p);
 Node *read_smooth_triangle(Parser *p);
 Node *read_polygon(Parser *p);
+Node *read_bicubic_patch(Parser *p);
 Node *read_mesh(Parser *p);
 Node *read_mesh2(Parser *p);
 Node *read_union(Parser *p);

@@ -172,6 +172,16 @@ static void read_inside_vector(Parser *p, MeshData *mesh)
     mesh->has_inside = true;
 }
 
+Node *read_mesh_leaf(Parser *p, MeshData *mesh)
+{
+    if (!scene_add_mesh(parse_scene(p), mesh)) /* from here on scene_free frees its index */
+        parse_no_null(p, NULL);
+    Status status = mesh_index(parse_diag(p), mesh, parse_options(p)->threads);
+    if (status != OK)
+        parse_fail_status(p, status);
+    return read_leaf(p, shape_mesh(parse_arena(p), mesh));
+}
+
 /* Drop what no triangle uses, build the index, and make the leaf. */
 static Node *finish_mesh(Parser *p, MeshDraft *d, Span span)
 {
@@ -187,12 +197,7 @@ static Node *finish_mesh(Parser *p, MeshDraft *d, Span span)
             m->uv_corners[i] = 0; /* triangles without uvs among others that have them */
     if (!d->has_texture)
         m->textures = NULL;
-    if (!scene_add_mesh(parse_scene(p), m)) /* from here on scene_free frees its index */
-        parse_no_null(p, NULL);
-    Status status = mesh_index(parse_diag(p), m, parse_options(p)->threads);
-    if (status != OK)
-        parse_fail_status(p, status);
-    Node *node = read_leaf(p, shape_mesh(parse_arena(p), m));
+    Node *node = read_mesh_leaf(p, m);
     if (d->has_texture) {
         node->mesh_textures = (const Texture *const *)d->textures;
         node->mesh_texture_count = (int)d->texture_count;

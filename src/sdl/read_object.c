@@ -24,6 +24,7 @@ static const ObjectRule *object_rule(TokenKind word)
         {KW_TRIANGLE, read_triangle},
         {KW_SMOOTH_TRIANGLE, read_smooth_triangle},
         {KW_POLYGON, read_polygon},
+        {KW_BICUBIC_PATCH, read_bicubic_patch},
         {KW_MESH, read_mesh},
         {KW_MESH2, read_mesh2},
         {KW_UNION, read_union},

@@ -1,0 +1,35 @@
+/* A tree of boxes around the triangles of a small mesh.
+ *
+ * Embree takes a device for each index, of which a process can have about a thousand; scenes may
+ * have far more small meshes than that.  SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_ACCEL_TRI_TREE_INT_H
+#define PMS_ACCEL_TRI_TREE_INT_H
+
+#include "accel/frame_int.h"
+
+/* Up to this many triangles a mesh has a tree of ours. */
+enum { TRI_TREE_MAX = 1 << 16 };
+
+/* An inner node has two children, side by side; a leaf has items. */
+typedef struct TriNode {
+    float lo[3], hi[3]; /* in the frame, padded */
+    uint32_t first;     /* child, or place in items */
+    uint32_t count;     /* items; 0: an inner node */
+} TriNode;
+
+typedef struct TriTree {
+    TriNode *nodes;  /* the first is the root */
+    uint32_t *items; /* triangle numbers */
+    uint32_t node_count;
+} TriTree;
+
+/* Build the tree of `count` boxes of the frame.  ERR_MEMORY or OK; free with tri_tree_done. */
+Status tri_tree_init(Diag *diag, const struct RTCBounds *boxes, uint32_t count, TriTree *out);
+void tri_tree_done(TriTree *tree);
+
+/* Offer each triangle whose box the ray may meet; `offer` returns the frame's new end of the
+ * ray.  Near boxes come first. */
+void tri_tree_walk(const TriTree *tree, const struct RTCRay *ray,
+                   float (*offer)(void *query, uint32_t triangle, float far), void *query);
+
+#endif
