@@ -8,8 +8,8 @@ static void compose(const double a[3][4], const double b[3][4], double out[3][4]
 {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 4; j++)
-            out[i][j] = b[i][0] * a[0][j] + b[i][1] * a[1][j] + b[i][2] * a[2][j] +
-                        (j == 3 ? b[i][3] : 0);
+            out[i][j] =
+                b[i][0] * a[0][j] + b[i][1] * a[1][j] + b[i][2] * a[2][j] + (j == 3 ? b[i][3] : 0);
 }
 
 Xform xform_then(const Xform *first, const Xform *second)

@@ -69,6 +69,7 @@ Node *read_triangle(Parser *p);
 Node *read_smooth_triangle(Parser *p);
 Node *read_polygon(Parser *p);
 Node *read_bicubic_patch(Parser *p);
+Node *read_prism(Parser *p);
 Node *read_mesh(Parser *p);
 Node *read_mesh2(Parser *p);
 Node *read_union(Parser *p);

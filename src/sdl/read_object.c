@@ -25,6 +25,7 @@ static const ObjectRule *object_rule(TokenKind word)
         {KW_SMOOTH_TRIANGLE, read_smooth_triangle},
         {KW_POLYGON, read_polygon},
         {KW_BICUBIC_PATCH, read_bicubic_patch},
+        {KW_PRISM, read_prism},
         {KW_MESH, read_mesh},
         {KW_MESH2, read_mesh2},
         {KW_UNION, read_union},
@@ -236,6 +237,13 @@ static bool read_behaviour(Parser *p, Node *node)
     }
 }
 
+/* Does sturm fit a shape?  It chooses how roots of polynomials are found. */
+static bool is_sturm_shape(TokenKind word)
+{
+    return word == KW_TORUS || word == KW_PRISM || word == KW_LATHE || word == KW_SOR ||
+           word == KW_OVUS || word == KW_OBJECT;
+}
+
 /* Words that choose a method of POV-Ray's and change nothing in what is seen here. */
 static bool read_method(Parser *p, TokenKind object_word)
 {
@@ -243,8 +251,8 @@ static bool read_method(Parser *p, TokenKind object_word)
     bool fits = false;
     const char *where = NULL;
     if (kind == KW_STURM) {
-        fits = object_word == KW_TORUS || object_word == KW_OBJECT;
-        where = "sturm fits a torus only";
+        fits = is_sturm_shape(object_word);
+        where = "sturm fits shapes made of polynomials only";
     } else if (kind == KW_HIERARCHY) {
         fits = object_word == KW_MESH || object_word == KW_MESH2 || object_word == KW_OBJECT;
         where = "hierarchy fits a mesh only";

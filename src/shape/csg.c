@@ -135,8 +135,8 @@ static bool is_before(const Crossing *a, const Crossing *b)
     return a->t < b->t || (a->t == b->t && a->child < b->child);
 }
 
-/* Sort in place without memory: shell sort, which is an insertion sort for short lists. */
-static void sort_crossings(Crossing *items, int count)
+/* Shell sort, which is an insertion sort for short lists. */
+void crossings_sort(Crossing *items, int count)
 {
     static const int gaps[] = {28703, 10301, 4193, 1073, 281, 77, 23, 8, 1};
     enum { GAPS = sizeof gaps / sizeof *gaps };
@@ -158,7 +158,7 @@ static void sweep(ShapeScratch *scratch, int base, Sweep *s)
 {
     s->items = scratch->items + base;
     int count = scratch->count - base;
-    sort_crossings(s->items, count);
+    crossings_sort(s->items, count);
     for (int i = 0; i < count;) {
         double end = s->items[i].t + s->items[i].t_error;
         bool is_alone = true;

@@ -19,6 +19,7 @@
 #include "base/arena.h"
 #include "math/bound.h"
 #include "math/ray.h"
+#include "math/spline_curve.h"
 #include "math/xform.h"
 
 #include <stdint.h>
@@ -35,6 +36,7 @@ typedef enum ShapeKind {
 typedef struct Shape Shape;
 typedef struct MeshData MeshData;
 typedef struct PolygonData PolygonData;
+typedef struct PrismData PrismData;
 typedef struct ReachBlock ReachBlock;
 typedef struct PlaneBlock PlaneBlock;
 
@@ -100,6 +102,7 @@ struct Shape {
         TriangleParams triangle;
         const MeshData *mesh; /* shared between instances, like those below */
         const PolygonData *polygon;
+        const PrismData *prism;
     } u;
     Shape **children; /* of a CSG node; difference is an intersection with inverted ones */
     int child_count;
@@ -166,6 +169,21 @@ Shape *shape_disc(Arena *arena, V3 center, V3 normal, double radius, double hole
 Shape *shape_triangle(Arena *arena, const V3 corner[3], const V3 *normal_or_null);
 Shape *shape_mesh(Arena *arena, const MeshData *mesh); /* after mesh_index */
 Shape *shape_polygon(Arena *arena, const PolygonData *data); /* after polygon_prepare, if flat */
+
+/* What lies between the heights lo <= hi and inside an odd number of closed loops.
+ *
+ * spans     x and z; each begins at the point where the one before ends, to the last bit, or begins
+ *           another loop.  At least one; borrowed.
+ * is_conic  at height y the curves are y times as large. */
+typedef struct PrismForm {
+    double lo, hi;
+    bool is_conic, is_open;
+    int degree; /* of the spans */
+    uint32_t span_count;
+    const CurveSpan *spans;
+} PrismForm;
+Shape *shape_prism(Arena *arena, const PrismForm *form);
+
 /* kind: SHAPE_UNION, SHAPE_MERGE or SHAPE_INTERSECTION; children are borrowed. */
 Shape *shape_csg(Arena *arena, ShapeKind kind, Shape **children, int child_count);
 

@@ -220,6 +220,9 @@ struct ShapeScratch {
  * so. */
 void scratch_push(ShapeScratch *scratch, const Crossing *crossing);
 
+/* Sort by t, then by child, in place. */
+void crossings_sort(Crossing *items, int count);
+
 /* Find the crossings of a leaf that has few, before any inversion. */
 void leaf_hits(const Shape *shape, const Ray *ray, LeafHits *out);
 

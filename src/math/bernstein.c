@@ -1,0 +1,189 @@
+/* Roots of polynomials in Bernstein form.
+ *
+ * The coefficients change sign at least as often as the polynomial: never means no root, once
+ * means one, which Newton steps kept inside its bracket find.  Else the interval is halved; both
+ * halves get the same value at the middle, so no root is lost or found twice there.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "math/bernstein.h"
+
+#include <math.h>
+
+/* Halvings until a double root is given up: its halves then differ by rounding alone. */
+enum { DEPTH_MAX = 32 };
+
+typedef struct RootList {
+    double *out;
+    int count, degree;
+} RootList;
+
+static int sign_changes(const double *b, int degree)
+{
+    int changes = 0;
+    for (int i = 0; i < degree; i++)
+        changes += (b[i] < 0) != (b[i + 1] < 0);
+    return changes;
+}
+
+double bernstein_at(const double *b, int degree, double x, double *slope)
+{
+    double p[BERNSTEIN_DEGREE_MAX + 1], y = 1 - x;
+    for (int i = 0; i <= degree; i++)
+        p[i] = b[i];
+    for (int k = degree; k > 1; k--)
+        for (int i = 0; i < k; i++)
+            p[i] = y * p[i] + x * p[i + 1];
+    if (degree == 0) {
+        *slope = 0;
+        return p[0];
+    }
+    *slope = degree * (p[1] - p[0]);
+    return y * p[0] + x * p[1];
+}
+
+double bernstein_value(const double *b, int degree, double x)
+{
+    double y = 1 - x;
+    if (degree == 1)
+        return y * b[0] + x * b[1];
+    if (degree == 2)
+        return y * (y * b[0] + 2 * x * b[1]) + x * x * b[2];
+    return y * y * (y * b[0] + 3 * x * b[1]) + x * x * (3 * y * b[2] + x * b[3]);
+}
+
+/* Split at x: the coefficients of both sides. */
+static void split(const double *b, int degree, double x, double *lo, double *hi)
+{
+    double y = 1 - x;
+    for (int i = 0; i <= degree; i++)
+        hi[i] = b[i];
+    lo[0] = hi[0];
+    for (int k = degree; k > 0; k--) {
+        for (int i = 0; i < k; i++)
+            hi[i] = y * hi[i] + x * hi[i + 1];
+        lo[degree - k + 1] = hi[0];
+    }
+}
+
+void bernstein_part(const double *b, int degree, double from, double to, double *out)
+{
+    double rest[BERNSTEIN_DEGREE_MAX + 1] = {0}, unused[BERNSTEIN_DEGREE_MAX + 1];
+    split(b, degree, from, unused, rest);
+    double share = from < 1 ? (to - from) / (1 - from) : 0;
+    split(rest, degree, share, out, unused);
+}
+
+void bernstein_add_product(const double *a, const double *b, int degree, double factor, double *out)
+{
+    if (degree == 1) {
+        out[0] += factor * (a[0] * b[0]);
+        out[1] += factor * (0.5 * (a[0] * b[1] + a[1] * b[0]));
+        out[2] += factor * (a[1] * b[1]);
+    } else if (degree == 2) {
+        out[0] += factor * (a[0] * b[0]);
+        out[1] += factor * (0.5 * (a[0] * b[1] + a[1] * b[0]));
+        out[2] += factor * ((a[0] * b[2] + a[2] * b[0] + 4 * (a[1] * b[1])) / 6);
+        out[3] += factor * (0.5 * (a[1] * b[2] + a[2] * b[1]));
+        out[4] += factor * (a[2] * b[2]);
+    } else {
+        out[0] += factor * (a[0] * b[0]);
+        out[1] += factor * (0.5 * (a[0] * b[1] + a[1] * b[0]));
+        out[2] += factor * (0.2 * (a[0] * b[2] + a[2] * b[0]) + 0.6 * (a[1] * b[1]));
+        out[3] +=
+            factor * (0.05 * (a[0] * b[3] + a[3] * b[0]) + 0.45 * (a[1] * b[2] + a[2] * b[1]));
+        out[4] += factor * (0.2 * (a[1] * b[3] + a[3] * b[1]) + 0.6 * (a[2] * b[2]));
+        out[5] += factor * (0.5 * (a[2] * b[3] + a[3] * b[2]));
+        out[6] += factor * (a[3] * b[3]);
+    }
+}
+
+int bernstein_quadratic(const double b[3], double discriminant, double out[2])
+{
+    /* With z = x / (1 - x): b0 + 2 b1 z + b2 z^2 = 0 for z > 0. */
+    bool is_low = b[0] < 0;
+    double q = -(b[1] + copysign(sqrt(discriminant > 0 ? discriminant : 0), b[1]));
+    double first = b[0] != q ? b[0] / (b[0] + q) : 0.5, last = q != -b[2] ? q / (q + b[2]) : 0.5;
+    if (is_low != (b[2] < 0)) {
+        /* One has z > 0: z = b0 / q or q / b2. */
+        bool is_first = is_low ? q < 0 : q > 0;
+        double x = is_first ? first : last;
+        out[0] = x >= 0 && x <= 1 ? x : x > 1 ? 1 : 0;
+        return 1;
+    }
+    if (is_low == (b[1] < 0) || !(discriminant > 0))
+        return 0;
+    out[0] = fmin(first, last);
+    out[1] = fmax(first, last);
+    return 2;
+}
+
+/* Find the one root, by the signs of the ends: Newton steps, halving where they leave the bracket
+ * or do not shrink it fast. */
+static double find_only(const double *b, int degree)
+{
+    double lo = 0, hi = 1, x = b[0] / (b[0] - b[degree]);
+    bool is_rising = b[0] < 0;
+    if (degree == 1)
+        return x;
+    if (!(x > 0 && x < 1))
+        x = 0.5;
+    for (int i = 0; i < 100; i++) {
+        double slope, value = bernstein_at(b, degree, x, &slope);
+        if ((value < 0) == is_rising)
+            lo = x;
+        else
+            hi = x;
+        double step = value / slope, next = x - step;
+        if (!(next >= lo && next <= hi) || (i & 7) == 7) {
+            next = 0.5 * (lo + hi);
+            step = next - x;
+        }
+        if (fabs(step) <= 0x1p-52)
+            return next;
+        x = next;
+    }
+    return x;
+}
+
+static void isolate(const double *b, double lo, double hi, int depth, RootList *list)
+{
+    int degree = list->degree, changes = sign_changes(b, degree);
+    if (changes == 0)
+        return;
+    bool is_odd = (b[0] < 0) != (b[degree] < 0);
+    if (changes == 1 || depth == DEPTH_MAX) {
+        if (is_odd && list->count < degree)
+            list->out[list->count++] = lo + (hi - lo) * find_only(b, degree);
+        return;
+    }
+    double left[BERNSTEIN_DEGREE_MAX + 1], right[BERNSTEIN_DEGREE_MAX + 1];
+    split(b, degree, 0.5, left, right);
+    double middle = 0.5 * (lo + hi);
+    isolate(left, lo, middle, depth + 1, list);
+    isolate(right, middle, hi, depth + 1, list);
+}
+
+int bernstein_roots(const double *b, int degree, double *out)
+{
+    if (degree == 2)
+        return bernstein_quadratic(b, b[1] * b[1] - b[0] * b[2], out);
+    if (degree == 0)
+        return 0;
+    RootList list = {out, 0, degree};
+    isolate(b, 0, 1, 0, &list);
+    return list.count;
+}
+
+void bernstein_range(const double *b, int degree, double *lo, double *hi)
+{
+    double slope[BERNSTEIN_DEGREE_MAX], turns[BERNSTEIN_DEGREE_MAX], ignored;
+    for (int i = 0; i < degree; i++)
+        slope[i] = b[i + 1] - b[i];
+    int count = degree > 1 ? bernstein_roots(slope, degree - 1, turns) : 0;
+    *lo = fmin(*lo, fmin(b[0], b[degree]));
+    *hi = fmax(*hi, fmax(b[0], b[degree]));
+    for (int i = 0; i < count; i++) {
+        double value = bernstein_at(b, degree, turns[i], &ignored);
+        *lo = fmin(*lo, value);
+        *hi = fmax(*hi, value);
+    }
+}
