@@ -48,16 +48,16 @@ static Poly derivative(const Poly *p)
     return d;
 }
 
-/* Return a power of two beyond all roots: twice Fujiwara's max |c_i/c_n|^(1/(n-i)). */
-static double root_bound(const Poly *p)
+/* Twice Fujiwara's max |c_i/c_n|^(1/(n-i)). */
+double roots_bound(const double *c, int degree)
 {
     int lead, most = -2000;
-    frexp(p->c[p->degree], &lead);
-    for (int i = 0; i < p->degree; i++) {
-        if (p->c[i] == 0)
+    frexp(c[degree], &lead);
+    for (int i = 0; i < degree; i++) {
+        if (c[i] == 0)
             continue;
-        int e, n = p->degree - i;
-        frexp(p->c[i], &e);
+        int e, n = degree - i;
+        frexp(c[i], &e);
         e += 1 - lead;
         int ceiling = e > 0 ? (e + n - 1) / n : -(-e / n);
         most = ceiling > most ? ceiling : most;
@@ -128,13 +128,13 @@ static int touch(const Poly *p, double x, Root *out)
 static int solve_by_brackets(const Poly *p, Root *out)
 {
     Poly d = derivative(p);
-    if (root_bound(p) == 0) { /* a power of x */
+    if (roots_bound(p->c, p->degree) == 0) { /* a power of x */
         out[0] = out[1] = (Root){0, 0};
         return p->degree % 2 ? 1 : 2;
     }
     Root turns[DEGREE_MAX];
     int turn_count = solve(&d, turns), count = 0;
-    double bound = root_bound(p), at[DEGREE_MAX + 2];
+    double bound = roots_bound(p->c, p->degree), at[DEGREE_MAX + 2];
     int last = 0;
     at[0] = -bound;
     for (int i = 0; i < turn_count; i++)

@@ -1,0 +1,541 @@
+/* Real roots of polynomials of any degree within an interval.
+ *
+ * The interval becomes [-1, 1].  Pieces of it are described by their Bernstein coefficients,
+ * whose changes of sign bound the number of roots: none, or one that Newton steps kept inside a
+ * bracket then find, or a single turning point whose height decides between two and none; all
+ * other pieces are halved, at places where the sign is certain.  Every number goes with a bound on
+ * its error, side by side so that both are computed at once.  What cannot be told from zero is
+ * one root of odd or of even multiplicity, as the signs to both sides say.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "math/roots.h"
+
+#include "math/eps.h"
+#include "math/v3.h"
+
+#include <float.h>
+#include <limits.h>
+#include <stddef.h>
+
+/* A value, and a bound on its error. */
+typedef double Pair __attribute__((vector_size(16)));
+#define PAIR(value, error) ((Pair){(value), (error)})
+
+enum {
+    TERMS_MAX = ROOTS_DEGREE_MAX + 1,
+    FRESH_DEPTH = 6, /* halvings for whose rounding the first coefficients allow */
+    DEPTH_MAX = 60,
+    CUTS_MAX = 40 /* for each degree */
+};
+
+typedef struct Solver {
+    int degree, count, cuts, most;
+    bool is_negative;    /* at the lower end */
+    Pair c[TERMS_MAX];   /* lowest first; error: that of the coefficient and of its use in a sum */
+    double widening;     /* bounds for pieces are as much wider than those for places */
+    double spare;        /* what more a piece allows for, in parts of a coefficient */
+    double middle, half; /* of the interval */
+    Root *out;
+} Solver;
+
+typedef struct Piece {
+    double a, b;        /* where it is, within [-1, 1] */
+    int sign_a, sign_b; /* the signs there, +1 or -1 */
+    int depth;
+    Pair at[TERMS_MAX]; /* Bernstein coefficients */
+} Piece;
+
+typedef struct Value {
+    double f, slope, bend, error; /* error: bound on that of f */
+} Value;
+
+static Value value_at(const Solver *s, double x)
+{
+    Pair f = s->c[s->degree], way = PAIR(x, fabs(x));
+    double slope = 0;
+    for (int i = s->degree - 1; i >= 0; i--) {
+        slope = slope * x + f[0];
+        f = f * way + s->c[i];
+    }
+    return (Value){.f = f[0], .slope = slope, .error = f[1]};
+}
+
+/* The same with half of the second derivative. */
+static Value bend_at(const Solver *s, double x)
+{
+    Pair f = s->c[s->degree], way = PAIR(x, fabs(x));
+    double slope = 0, bend = 0;
+    for (int i = s->degree - 1; i >= 0; i--) {
+        bend = bend * x + slope;
+        slope = slope * x + f[0];
+        f = f * way + s->c[i];
+    }
+    return (Value){f[0], slope, bend, f[1]};
+}
+
+/* Return the sign of a value, or 0 where it is not certain. */
+static int sign_of(double value, double error)
+{
+    return value > error ? 1 : value < -error ? -1 : 0;
+}
+
+static int sign_at(const Solver *s, double x)
+{
+    Value v = value_at(s, x);
+    return sign_of(v.f, v.error);
+}
+
+/* Return the sign at a place to cut: certain to the coefficients of pieces, too, as they are never
+ * certain next to a place that is not. */
+static int sign_at_cut(const Solver *s, double x)
+{
+    Value v = value_at(s, x);
+    return sign_of(v.f, v.error * s->widening);
+}
+
+/* --- pieces -------------------------------------------------------------------------------- */
+
+static void piece_place(Piece *piece, double a, double b, int sign_a, int sign_b, int depth)
+{
+    piece->a = a;
+    piece->b = b;
+    piece->sign_a = sign_a;
+    piece->sign_b = sign_b;
+    piece->depth = depth;
+}
+
+/* Derive the coefficients of a piece from those of the polynomial: about the end nearer to 0, where
+ * they are smaller. */
+static void piece_fill(const Solver *s, Piece *piece)
+{
+    int n = s->degree;
+    bool is_backward = fabs(piece->b) < fabs(piece->a);
+    double from = is_backward ? piece->b : piece->a;
+    double width = is_backward ? piece->a - piece->b : piece->b - piece->a;
+    Pair *t = piece->at, way = PAIR(from, fabs(from)), step = PAIR(width, fabs(width));
+    for (int i = 0; i <= n; i++)
+        t[i] = s->c[i] + PAIR(0, s->spare * fabs(s->c[i][0]));
+    if (from != 0)
+        for (int k = 0; k < n; k++)
+            for (int i = n - 1; i >= k; i--)
+                t[i] += t[i + 1] * way;
+    Pair power = PAIR(1, 1);
+    double binomial = 1;
+    for (int i = 0; i <= n; i++) {
+        t[i] *= power / PAIR(binomial, binomial);
+        power *= step;
+        binomial = binomial * (n - i) / (i + 1);
+    }
+    for (int k = 1; k <= n; k++)
+        for (int i = n; i >= k; i--)
+            t[i] += t[i - 1];
+    if (!is_backward)
+        return;
+    for (int i = 0; i < n - i; i++) {
+        Pair other = t[i];
+        t[i] = t[n - i];
+        t[n - i] = other;
+    }
+}
+
+/* Cut a piece in two, `share` of the way along it. */
+static void piece_split(const Solver *s, double share, Piece *left, Piece *right)
+{
+    int n = s->degree;
+    Pair *r = right->at, to = PAIR(share, share), rest = PAIR(1 - share, 1 - share);
+    left->at[0] = r[0];
+    for (int k = 1; k <= n; k++) {
+        for (int i = 0; i <= n - k; i++)
+            r[i] = r[i] * rest + r[i + 1] * to;
+        left->at[k] = r[0];
+    }
+}
+
+/* Count the changes of sign that a list can have at most; signs that are not certain may be any. */
+typedef struct Changes {
+    int most, first, last; /* first, last: certain sign, 0: there is none */
+    int unknown;           /* in a row */
+} Changes;
+
+static void changes_add(Changes *c, int sign)
+{
+    if (sign == 0) {
+        c->unknown++;
+        return;
+    }
+    if (c->first == 0) {
+        c->first = sign;
+        c->most = c->unknown;
+    } else if (sign == c->last) {
+        c->most += (c->unknown + 1) / 2 * 2;
+    } else {
+        c->most += 1 + c->unknown / 2 * 2;
+    }
+    c->last = sign;
+    c->unknown = 0;
+}
+
+static Changes piece_changes(const Solver *s, const Piece *piece)
+{
+    Changes c = {0, 0, 0, 0};
+    changes_add(&c, piece->sign_a);
+    for (int i = 1; i < s->degree; i++)
+        changes_add(&c, sign_of(piece->at[i][0], piece->at[i][1]));
+    changes_add(&c, piece->sign_b);
+    return c;
+}
+
+static Changes slope_changes(const Solver *s, const Piece *piece)
+{
+    Changes c = {0, 0, 0, 0};
+    for (int i = 0; i < s->degree; i++) {
+        Pair a = piece->at[i], b = piece->at[i + 1];
+        changes_add(&c, sign_of(b[0] - a[0], a[1] + b[1]));
+    }
+    c.most += c.unknown;
+    return c;
+}
+
+/* --- roots --------------------------------------------------------------------------------- */
+
+static void add_root(Solver *s, double x, double error)
+{
+    if (s->count >= s->degree)
+        return;
+    double place = s->middle + s->half * x;
+    s->out[s->count++] = (Root){place, s->half * error + 2 * EPS_DOUBLE * fabs(place)};
+}
+
+/* Bound the error of the only root of [a, b]: as far from it the signs are certain. */
+static double error_of(const Solver *s, double x, double a, double b)
+{
+    Value v = value_at(s, x);
+    double step = 2 * (fabs(v.f) + v.error) / fabs(v.slope);
+    double least = 2 * EPS_DOUBLE * fabs(x) + DBL_MIN;
+    if (!(step > least))
+        step = least;
+    for (; step < b - a; step *= 2) {
+        int below = x - step <= a ? 2 : sign_at(s, x - step);
+        int above = x + step >= b ? 2 : sign_at(s, x + step);
+        if (below != 0 && above != 0 && below != above)
+            return step;
+    }
+    return b - a;
+}
+
+/* Find the only root of [a, b] from a guess. */
+static void find_root(Solver *s, double a, double b, int sign_b, double x)
+{
+    double lo = a, hi = b;
+    if (!(x > lo && x < hi))
+        x = 0.5 * (lo + hi);
+    for (int i = 0; i < 200; i++) {
+        Value v = value_at(s, x);
+        if (v.f == 0)
+            break;
+        if ((v.f > 0) == (sign_b > 0))
+            hi = x;
+        else
+            lo = x;
+        double step = v.f / v.slope, next = x - step;
+        bool is_done = fabs(step) <= EPS_DOUBLE * fabs(x) || fabs(v.f) <= 0.125 * v.error;
+        bool is_kept = next > lo && next < hi;
+        if (!is_kept || ((i & 7) == 7 && !is_done))
+            next = 0.5 * (lo + hi);
+        if (!(next > lo && next < hi) || (is_done && !is_kept))
+            break;
+        x = next;
+        if (is_done)
+            break;
+    }
+    add_root(s, x, error_of(s, x, a, b));
+}
+
+/* Return where in a piece the polygon of its coefficients crosses zero. */
+static double polygon_root(const Solver *s, const Piece *piece)
+{
+    for (int i = 0; i < s->degree; i++) {
+        double f = piece->at[i][0], g = piece->at[i + 1][0];
+        if ((f > 0) != (g > 0))
+            return piece->a + (piece->b - piece->a) * (i + f / (f - g)) / s->degree;
+    }
+    return 0.5 * (piece->a + piece->b);
+}
+
+/* Find the only turning point of a piece, where the slope's sign becomes `sign`. */
+static double find_turn(const Solver *s, const Piece *piece, int sign)
+{
+    int n = s->degree;
+    double lo = piece->a, hi = piece->b;
+    double at_lo = piece->at[1][0] - piece->at[0][0], at_hi = piece->at[n][0] - piece->at[n - 1][0];
+    double x = lo + (hi - lo) * at_lo / (at_lo - at_hi);
+    if (!(x > lo && x < hi))
+        x = 0.5 * (lo + hi);
+    for (int i = 0; i < 200; i++) {
+        Value v = bend_at(s, x);
+        if (v.slope == 0)
+            break;
+        if ((v.slope > 0) == (sign > 0))
+            hi = x;
+        else
+            lo = x;
+        double next = x - v.slope / (2 * v.bend);
+        if (!(next > lo && next < hi) || (i & 7) == 7)
+            next = 0.5 * (lo + hi);
+        if (!(next > lo && next < hi))
+            break;
+        double moved = fabs(next - x);
+        x = next;
+        if (moved <= EPS_DOUBLE * fabs(x))
+            break;
+    }
+    return x;
+}
+
+/* A piece with the same sign at both ends that turns once: two roots, two equal ones or none. */
+static void solve_turn(Solver *s, const Piece *piece)
+{
+    double x = find_turn(s, piece, piece->sign_b);
+    Value v = bend_at(s, x);
+    int sign = sign_of(v.f, v.error);
+    if (sign == piece->sign_a)
+        return;
+    if (sign != 0) {
+        double away = sqrt(fabs(v.f / v.bend));
+        find_root(s, piece->a, x, sign, x - away);
+        find_root(s, x, piece->b, piece->sign_b, x + away);
+        return;
+    }
+    double error = sqrt(4 * v.error / fabs(v.bend)) + 2 * EPS_DOUBLE * fabs(x);
+    if (!(error < piece->b - piece->a))
+        error = piece->b - piece->a;
+    add_root(s, x, error);
+    add_root(s, x, error);
+}
+
+/* A piece that cannot be told from zero. */
+static void solve_zero(Solver *s, const Piece *piece)
+{
+    double x = 0.5 * (piece->a + piece->b), error = 0.5 * (piece->b - piece->a);
+    add_root(s, x, error);
+    if (piece->sign_a == piece->sign_b)
+        add_root(s, x, error);
+}
+
+/* Decide on a piece if that can be done; false when it is to be cut. */
+static bool solve_piece(Solver *s, const Piece *piece)
+{
+    Changes f = piece_changes(s, piece);
+    if (f.most == 0)
+        return true;
+    if (f.most == 1) {
+        find_root(s, piece->a, piece->b, piece->sign_b, polygon_root(s, piece));
+        return true;
+    }
+    Changes slope = slope_changes(s, piece);
+    if (slope.most == 0 && piece->sign_a != piece->sign_b) {
+        find_root(s, piece->a, piece->b, piece->sign_b, polygon_root(s, piece));
+        return true;
+    }
+    if (slope.most <= 1 && piece->sign_a == piece->sign_b) {
+        if (slope.first == -piece->sign_a)
+            solve_turn(s, piece);
+        return true;
+    }
+    return false;
+}
+
+static void solve(Solver *s, Piece *piece)
+{
+    static const double share[] = {0.5, 0.4375, 0.5625, 0.375, 0.625, 0.25, 0.75, 0.125, 0.875};
+    if (s->count >= s->most || solve_piece(s, piece))
+        return;
+    int sign = 0;
+    double cut = 0, part = 0;
+    for (size_t i = 0; i < sizeof share / sizeof share[0] && sign == 0; i++) {
+        part = share[i];
+        cut = piece->a + (piece->b - piece->a) * part;
+        sign = cut > piece->a && cut < piece->b ? sign_at_cut(s, cut) : 0;
+    }
+    if (sign == 0 || piece->depth >= DEPTH_MAX || ++s->cuts > CUTS_MAX * s->degree) {
+        solve_zero(s, piece);
+        return;
+    }
+    Piece left;
+    piece_place(&left, piece->a, cut, piece->sign_a, sign, piece->depth + 1);
+    if (left.depth % FRESH_DEPTH == 0)
+        piece_fill(s, &left);
+    else
+        piece_split(s, part, &left, piece);
+    piece_place(piece, cut, piece->b, sign, piece->sign_b, piece->depth + 1);
+    if (piece->depth % FRESH_DEPTH == 0)
+        piece_fill(s, piece);
+    solve(s, &left);
+    solve(s, piece);
+}
+
+/* --- the whole interval -------------------------------------------------------------------- */
+
+/* Bring the coefficients to the interval; false when they come near to over- or underflow. */
+static bool solver_init(Solver *s, const double *c, const double *c_error, int degree)
+{
+    double power = 1, a = fabs(s->middle), most = 0;
+    s->degree = degree;
+    for (int i = 0; i <= degree; i++) {
+        s->c[i] = PAIR(c[i], (c_error ? c_error[i] : 0) +
+                                 (s->middle != 0 ? 2 * (degree + 1) * EPS_DOUBLE * fabs(c[i]) : 0));
+    }
+    if (a != 0)
+        for (int k = 0; k < degree; k++)
+            for (int i = degree - 1; i >= k; i--)
+                s->c[i] += s->c[i + 1] * PAIR(s->middle, a);
+    for (int i = 0; i <= degree; i++, power *= s->half) {
+        s->c[i] *= PAIR(power, power);
+        most = num_max(most, fabs(s->c[i][0]));
+        s->c[i][1] += 3 * (degree + 1) * EPS_DOUBLE * fabs(s->c[i][0]);
+    }
+    s->spare = (2 * FRESH_DEPTH * degree + 10) * EPS_DOUBLE;
+    s->widening = 1 + s->spare / (3 * (degree + 1) * EPS_DOUBLE);
+    return most > 0x1p-800 && most < 0x1p800;
+}
+
+/* Is the constant term larger than all others together can be? */
+static bool is_never_zero(const Solver *s)
+{
+    double rest = s->c[0][1];
+    for (int i = 1; i <= s->degree; i++)
+        rest += fabs(s->c[i][0]) + s->c[i][1];
+    return fabs(s->c[0][0]) > rest;
+}
+
+/* The sign at an end, as computed where it is not certain. */
+static int end_sign(const Solver *s, double x)
+{
+    return value_at(s, x).f < 0 ? -1 : 1;
+}
+
+static void solve_whole(Solver *s)
+{
+    static const double place[] = {0, 0x1p-6, -0x1p-6, 0x1p-4, -0x1p-4, 0.25, -0.25};
+    s->is_negative = s->c[0][0] < 0;
+    if (is_never_zero(s))
+        return;
+    Piece piece, right;
+    piece_place(&piece, -1, 1, end_sign(s, -1), end_sign(s, 1), 0);
+    s->is_negative = piece.sign_a < 0;
+    for (size_t i = 0; i < sizeof place / sizeof place[0]; i++) {
+        int sign = sign_at_cut(s, place[i]);
+        if (sign == 0)
+            continue;
+        piece_place(&right, place[i], 1, sign, piece.sign_b, 0);
+        piece_place(&piece, -1, place[i], piece.sign_a, sign, 0);
+        piece_fill(s, &piece);
+        solve(s, &piece);
+        if (s->count >= s->most)
+            return;
+        piece_fill(s, &right);
+        solve(s, &right);
+        return;
+    }
+    piece_fill(s, &piece);
+    solve(s, &piece);
+}
+
+/* The exponent of a number: 0.5 <= |x| 2^-e < 1. */
+static int exponent_of(double x)
+{
+    int e;
+    frexp(x, &e);
+    return e;
+}
+
+/* Solve for x 2^-k, near 1, and with coefficients near 1: their powers would overflow. */
+static int solve_scaled(Solver *s, const double *c, const double *c_error, int degree, double lo,
+                        double hi)
+{
+    int k = exponent_of(num_max(fabs(lo), fabs(hi))), most = INT_MIN;
+    double scaled[TERMS_MAX], error[TERMS_MAX];
+    for (int i = 0; i <= degree; i++)
+        if (c[i] != 0 && exponent_of(c[i]) + k * i > most)
+            most = exponent_of(c[i]) + k * i;
+    for (int i = 0; i <= degree; i++) {
+        scaled[i] = ldexp(c[i], k * i - most);
+        error[i] = c_error ? ldexp(c_error[i], k * i - most) : 0;
+    }
+    lo = ldexp(lo, -k);
+    hi = ldexp(hi, -k);
+    s->middle = 0.5 * (lo + hi);
+    s->half = 0.5 * (hi - lo);
+    if (most == INT_MIN || !solver_init(s, scaled, error, degree))
+        return 0;
+    solve_whole(s);
+    for (int i = 0; i < s->count; i++)
+        s->out[i] = (Root){ldexp(s->out[i].x, k), ldexp(s->out[i].error, k)};
+    return s->count;
+}
+
+/* Degrees up to two: the closed forms. */
+static int solve_low(const double *c, const double *c_error, int degree, double lo, double hi,
+                     bool *is_negative, Root *out)
+{
+    double given[3] = {0, 0, 0}, error[3] = {0, 0, 0};
+    for (int i = 0; i <= degree; i++) {
+        given[i] = c[i];
+        error[i] = c_error ? c_error[i] : 0;
+    }
+    Root all[2];
+    int count = roots_quadratic(given, error, all), kept = 0;
+    *is_negative = degree % 2 ? c[degree] > 0 : c[degree] < 0;
+    for (int i = 0; i < count; i++) {
+        if (all[i].x >= lo && all[i].x <= hi)
+            out[kept++] = all[i];
+        *is_negative ^= all[i].x < lo;
+    }
+    return kept;
+}
+
+static bool is_all_finite(const double *c, const double *c_error, int degree)
+{
+    for (int i = 0; i <= degree; i++)
+        if (!isfinite(c[i]) || (c_error && !isfinite(c_error[i])))
+            return false;
+    return true;
+}
+
+int roots_first(const double *c, const double *c_error, int degree, double lo, double hi, int most,
+                bool *is_negative, Root *out)
+{
+    while (degree > 0 && c[degree] == 0 && (!c_error || c_error[degree] == 0))
+        degree--;
+    *is_negative = c[0] < 0;
+    if (degree <= 0 || degree > ROOTS_DEGREE_MAX || !(lo < hi) ||
+        !is_all_finite(c, c_error, degree))
+        return 0;
+    if (degree <= 2)
+        return solve_low(c, c_error, degree, lo, hi, is_negative, out);
+    if (!isfinite(lo) || !isfinite(hi)) {
+        double bound = roots_bound(c, degree);
+        lo = isfinite(lo) ? lo : -bound;
+        hi = isfinite(hi) ? hi : bound;
+        if (!(lo < hi)) { /* beyond all roots */
+            *is_negative = (c[degree] < 0) ^ (lo < 0 && degree % 2 == 1);
+            return 0;
+        }
+    }
+    Solver s = {.middle = 0.5 * (lo + hi), .half = 0.5 * (hi - lo), .most = most, .out = out};
+    int count = 0;
+    if (solver_init(&s, c, c_error, degree)) {
+        solve_whole(&s);
+        count = s.count;
+    } else {
+        count = solve_scaled(&s, c, c_error, degree, lo, hi);
+    }
+    *is_negative = s.is_negative;
+    return count;
+}
+
+int roots_within(const double *c, const double *c_error, int degree, double lo, double hi,
+                 Root *out)
+{
+    bool is_negative;
+    return roots_first(c, c_error, degree, lo, hi, degree, &is_negative, out);
+}
