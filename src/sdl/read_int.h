@@ -70,6 +70,8 @@ Node *read_smooth_triangle(Parser *p);
 Node *read_polygon(Parser *p);
 Node *read_bicubic_patch(Parser *p);
 Node *read_prism(Parser *p);
+Node *read_lathe(Parser *p);
+Node *read_sor(Parser *p);
 Node *read_mesh(Parser *p);
 Node *read_mesh2(Parser *p);
 Node *read_union(Parser *p);

@@ -26,6 +26,8 @@ static const ObjectRule *object_rule(TokenKind word)
         {KW_POLYGON, read_polygon},
         {KW_BICUBIC_PATCH, read_bicubic_patch},
         {KW_PRISM, read_prism},
+        {KW_LATHE, read_lathe},
+        {KW_SOR, read_sor},
         {KW_MESH, read_mesh},
         {KW_MESH2, read_mesh2},
         {KW_UNION, read_union},

@@ -1,4 +1,4 @@
-/* The parameters of shapes made of curves: prism.
+/* The parameters of shapes made of curves: prism, lathe, sor.
  *
  * Points that the language takes for the same are made the same here, to the last bit, so that
  * spans meet in their knots.  SPDX-License-Identifier: Apache-2.0 */
@@ -154,4 +154,50 @@ Node *read_prism(Parser *p)
     form.spans = spans;
     form.degree = spline_degree(kind);
     return read_leaf(p, shape_prism(parse_arena(p), &form));
+}
+
+/* --- lathe and sor ------------------------------------------------------------------------- */
+
+Node *read_lathe(Parser *p)
+{
+    SplineKind kind = SPLINE_LINEAR;
+    read_spline_word(p, &kind);
+    Span first = parse_peek(p)->span;
+    int count = read_point_count(p, "the number of points of a lathe", spline_points_min(kind));
+    if (kind == SPLINE_BEZIER && count % 4)
+        parse_fail(p, first, "the points of a bezier_spline come in fours, got %d", count);
+    first = parse_peek(p)->span;
+    V2 *points = read_points(p, count);
+    Span span = span_join(first, parse_last_span(p));
+    for (int i = 1; i + 1 < count; i++)
+        if (points[i].u < 0)
+            parse_fail(p, span, "radius %d of a lathe is negative: %g", i + 1, points[i].u);
+    for (int i = 4; kind == SPLINE_BEZIER && i < count; i += 4)
+        if (is_same(points[i], points[i - 1]))
+            points[i] = points[i - 1];
+    int before = kind == SPLINE_QUADRATIC || kind == SPLINE_CUBIC, after = kind == SPLINE_CUBIC;
+    if (is_same(points[count - 1 - after], points[before]))
+        points[count - 1 - after] = points[before];
+    CurveSpan *spans = parse_alloc(p, (size_t)count * sizeof *spans);
+    uint32_t span_count = make_spans(kind, points, count, spans);
+    Arena *arena = parse_arena(p);
+    return read_leaf(p, shape_lathe(arena, spline_degree(kind), spans, span_count));
+}
+
+Node *read_sor(Parser *p)
+{
+    int count = read_point_count(p, "the number of points of a sor", 4);
+    Span first = parse_peek(p)->span;
+    V2 *points = read_points(p, count);
+    Span span = span_join(first, parse_last_span(p));
+    for (int i = 0; i < count; i++) {
+        if (points[i].u < 0)
+            parse_fail(p, span, "radius %d of a sor is negative: %g", i + 1, points[i].u);
+        if (i > 1 && i + 1 < count && !(points[i].v > points[i - 1].v))
+            parse_fail(p, span, "height %d of a sor is not above the one before it", i + 1);
+        if (i > 1 && !(fabs(points[i].v - points[i - 2].v) >= EPS_LANGUAGE))
+            parse_fail(p, span, "heights %d and %d of a sor are the same", i - 1, i + 1);
+    }
+    bool is_open = parse_accept(p, KW_OPEN);
+    return read_leaf(p, shape_sor(parse_arena(p), points, count, is_open));
 }

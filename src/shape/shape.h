@@ -37,6 +37,7 @@ typedef struct Shape Shape;
 typedef struct MeshData MeshData;
 typedef struct PolygonData PolygonData;
 typedef struct PrismData PrismData;
+typedef struct RevolveData RevolveData;
 typedef struct ReachBlock ReachBlock;
 typedef struct PlaneBlock PlaneBlock;
 
@@ -103,6 +104,7 @@ struct Shape {
         const MeshData *mesh; /* shared between instances, like those below */
         const PolygonData *polygon;
         const PrismData *prism;
+        const RevolveData *revolve; /* of lathe and sor */
     } u;
     Shape **children; /* of a CSG node; difference is an intersection with inverted ones */
     int child_count;
@@ -183,6 +185,14 @@ typedef struct PrismForm {
     const CurveSpan *spans;
 } PrismForm;
 Shape *shape_prism(Arena *arena, const PrismForm *form);
+
+/* Curves of (radius, height), turned around the y axis; open where they do not close.  spans: as in
+ * PrismForm, but loops need not close. */
+Shape *shape_lathe(Arena *arena, int degree, const CurveSpan *spans, uint32_t count);
+
+/* points: at least four of (radius, height); heights grow from the second to the last but one.  The
+ * first and the last only set slopes. */
+Shape *shape_sor(Arena *arena, const V2 *points, int count, bool is_open);
 
 /* kind: SHAPE_UNION, SHAPE_MERGE or SHAPE_INTERSECTION; children are borrowed. */
 Shape *shape_csg(Arena *arena, ShapeKind kind, Shape **children, int child_count);

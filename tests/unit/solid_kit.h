@@ -21,8 +21,8 @@ static inline int check_line(const Shape *shape, V3 o, V3 d, double size, Inside
     CrossList list;
     shape_crossings(shape, &ray, scratch, &list);
     int state = list.is_inside_before, count = list.count;
-    static Crossing items[256];
-    if (count > 256)
+    static Crossing items[1024];
+    if (count > 1024)
         fail_msg("%d crossings", count);
     for (int i = 0; i < count; i++)
         items[i] = list.items[i];
