@@ -72,6 +72,7 @@ Node *read_bicubic_patch(Parser *p);
 Node *read_prism(Parser *p);
 Node *read_lathe(Parser *p);
 Node *read_sor(Parser *p);
+Node *read_ovus(Parser *p);
 Node *read_mesh(Parser *p);
 Node *read_mesh2(Parser *p);
 Node *read_union(Parser *p);

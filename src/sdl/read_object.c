@@ -28,6 +28,7 @@ static const ObjectRule *object_rule(TokenKind word)
         {KW_PRISM, read_prism},
         {KW_LATHE, read_lathe},
         {KW_SOR, read_sor},
+        {KW_OVUS, read_ovus},
         {KW_MESH, read_mesh},
         {KW_MESH2, read_mesh2},
         {KW_UNION, read_union},

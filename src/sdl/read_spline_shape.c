@@ -1,4 +1,4 @@
-/* The parameters of shapes made of curves: prism, lathe, sor.
+/* The parameters of shapes made of curves: prism, lathe, sor, ovus.
  *
  * Points that the language takes for the same are made the same here, to the last bit, so that
  * spans meet in their knots.  SPDX-License-Identifier: Apache-2.0 */
@@ -200,4 +200,23 @@ Node *read_sor(Parser *p)
     }
     bool is_open = parse_accept(p, KW_OPEN);
     return read_leaf(p, shape_sor(parse_arena(p), points, count, is_open));
+}
+
+Node *read_ovus(Parser *p)
+{
+    Span first = parse_peek(p)->span;
+    double bottom = read_not_negative(p, "the lower radius of an ovus");
+    parse_comma(p);
+    double top = read_not_negative(p, "the upper radius of an ovus");
+    Span span = span_join(first, parse_last_span(p));
+    if (top >= 2 * bottom && top > 0) {
+        parse_warn(p, WARN_GEOMETRY, span,
+                   "the upper radius of an ovus is at least twice the lower: it is a sphere");
+        return read_leaf(p, shape_sphere(parse_arena(p), v3(0, bottom, 0), top));
+    }
+    if (!(bottom > 0)) {
+        parse_warn(p, WARN_GEOMETRY, span, "both radii of an ovus are 0");
+        return read_empty(p);
+    }
+    return read_leaf(p, shape_ovus(parse_arena(p), bottom, top));
 }

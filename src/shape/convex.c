@@ -16,6 +16,7 @@ bool shape_is_convex_leaf(const Shape *shape)
         return true; /* a half-space either way */
     case SHAPE_SPHERE:
     case SHAPE_BOX:
+    case SHAPE_OVUS:
         return !shape->is_inverted;
     case SHAPE_CONE:
         return !shape->is_inverted && !shape->is_open;

@@ -67,6 +67,12 @@ typedef struct TorusParams {
     double major, minor; /* around the y axis, both >= 0 */
 } TorusParams;
 
+typedef struct OvusParams {
+    double bottom, top; /* radii of the balls: about the origin, and about (0, bottom, 0) */
+    double arc, height; /* radius of the arc between them, and height of its centre */
+    double beyond;      /* how far that is beyond the axis */
+} OvusParams;
+
 typedef struct DiscParams {
     double hole, radius; /* in the plane z = 0, inside is z < 0 */
 } DiscParams;
@@ -100,6 +106,7 @@ struct Shape {
         ConeParams cone;
         TorusParams torus;
         DiscParams disc;
+        OvusParams ovus;
         TriangleParams triangle;
         const MeshData *mesh; /* shared between instances, like those below */
         const PolygonData *polygon;
@@ -189,6 +196,9 @@ Shape *shape_prism(Arena *arena, const PrismForm *form);
 /* Curves of (radius, height), turned around the y axis; open where they do not close.  spans: as in
  * PrismForm, but loops need not close. */
 Shape *shape_lathe(Arena *arena, int degree, const CurveSpan *spans, uint32_t count);
+
+/* Radii above 0, top < 2 bottom. */
+Shape *shape_ovus(Arena *arena, double bottom, double top);
 
 /* points: at least four of (radius, height); heights grow from the second to the last but one.  The
  * first and the last only set slopes. */
