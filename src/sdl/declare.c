@@ -112,6 +112,8 @@ void declare_directive(Parser *p, Token word)
     if (!left.symbol)
         left.symbol = word.kind == KW_LOCAL ? symbol_local(p, name_of(&name))
                                             : symbol_visible(p, name_of(&name));
+    if (!left.array && left.symbol->target->kind == VALUE_FUNCTION)
+        parse_fail(p, name.span, "`%s` is a function already; #undef it first", name.text);
     if (left.array)
         array_assign(p, left.array, left.item, &value, name.span);
     else

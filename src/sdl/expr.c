@@ -125,6 +125,10 @@ static void parse_number_variable(Parser *p, Terms *out)
 {
     Span begin = parse_peek(p)->span;
     const Value *value = parse_variable(p, NULL);
+    if (value->kind == VALUE_FUNCTION) {
+        parse_function_call(p, value, span_join(begin, p->last), out);
+        return;
+    }
     if (value->kind != VALUE_NUMBERS && value->kind != VALUE_COLOR)
         parse_fail(p, span_join(begin, p->last), "a float or vector wanted, found %s",
                    value_text(value));
@@ -439,7 +443,7 @@ bool parse_is_expression(Parser *p)
         return true;
     case TOKEN_IDENTIFIER: {
         ValueKind kind = peek_value_kind(p);
-        return kind == VALUE_NUMBERS || kind == VALUE_COLOR;
+        return kind == VALUE_NUMBERS || kind == VALUE_COLOR || kind == VALUE_FUNCTION;
     }
     default:
         return is_number_word(token->kind);

@@ -8,6 +8,7 @@
 #ifndef PMS_SDL_PARSER_INT_H
 #define PMS_SDL_PARSER_INT_H
 
+#include "math/func.h"
 #include "sdl/sdl_int.h"
 
 #include <setjmp.h>
@@ -262,6 +263,16 @@ void parse_short_after(Parser *p, Terms *first);
 double parse_condition(Parser *p); /* a full expression in parentheses, one float */
 double terms_float(Parser *p, const Terms *terms, Span begin, TokenKind after);
 V3 terms_v3(Parser *p, const Terms *terms, Span begin);
+
+/* --- function.c, function_internal.c ---------------------------------------------------------- */
+
+/* Read function { ... }. */
+void parse_function(Parser *p, Value *out);
+/* Work out a call of a function whose name has been taken. */
+void parse_function_call(Parser *p, const Value *function, Span name, Terms *out);
+/* Return the function of the language's library that has this number, or NULL: pms has it not
+ * yet. */
+const Func *function_internal(Parser *p, int number);
 
 /* --- builtin_*.c ------------------------------------------------------------------------------ */
 

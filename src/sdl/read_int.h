@@ -75,6 +75,7 @@ Node *read_sor(Parser *p);
 Node *read_ovus(Parser *p);
 Node *read_mesh(Parser *p);
 Node *read_mesh2(Parser *p);
+Node *read_isosurface(Parser *p);
 Node *read_union(Parser *p);
 Node *read_merge(Parser *p);
 Node *read_intersection(Parser *p);

@@ -18,7 +18,8 @@ const char *value_text(const Value *value)
         [VALUE_CAMERA] = "a camera",     [VALUE_COLOR_MAP] = "a color_map",
         [VALUE_SKY] = "a sky_sphere",    [VALUE_MEDIA] = "a media",
         [VALUE_DENSITY] = "a density",   [VALUE_DENSITY_MAP] = "a density_map",
-        [VALUE_FOG] = "a fog",           [VALUE_RAINBOW] = "a rainbow"};
+        [VALUE_FOG] = "a fog",           [VALUE_RAINBOW] = "a rainbow",
+        [VALUE_FUNCTION] = "a function"};
     return value->kind == VALUE_NUMBERS ? numbers[value->count] : kinds[value->kind];
 }
 
@@ -89,10 +90,13 @@ static void value_after(Parser *p, const Value *first, Value *out)
     *out = *first;
     if (first->kind == VALUE_ARRAY)
         out->node = array_copy(p, first->node);
-    if (!is_numbers(first))
-        return;
     Terms terms;
-    terms_from_value(&terms, first);
+    if (is_numbers(first))
+        terms_from_value(&terms, first);
+    else if (first->kind == VALUE_FUNCTION && parse_is_next(p, TOKEN_LPAREN))
+        parse_function_call(p, first, p->last, &terms);
+    else
+        return;
     parse_short_after(p, &terms);
     value_from_terms(out, &terms);
 }
@@ -123,6 +127,10 @@ static void other_value(Parser *p, Value *out)
 {
     if (parse_peek(p)->kind == KW_ARRAY) {
         parse_array(p, out);
+        return;
+    }
+    if (parse_peek(p)->kind == KW_FUNCTION) {
+        parse_function(p, out);
         return;
     }
     /* Directives inside a block are carried out where they stand, in a #declare too. */
@@ -170,7 +178,9 @@ void parse_argument(Parser *p, Argument *out)
     Value first = *variable;
     int frame = owner->frame;
     long serial = owner->frame_serial;
-    if (is_operator(parse_peek(p)->kind) && is_numbers(&first)) {
+    TokenKind next = parse_peek(p)->kind;
+    bool is_call = next == TOKEN_LPAREN && first.kind == VALUE_FUNCTION;
+    if (is_call || (is_operator(next) && is_numbers(&first))) {
         value_after(p, &first, &out->value);
         return;
     }

@@ -18,6 +18,7 @@
 #include "accel/accel.h"
 #include "base/arena.h"
 #include "math/bound.h"
+#include "math/func.h"
 #include "math/ray.h"
 #include "math/spline_curve.h"
 #include "math/xform.h"
@@ -83,6 +84,12 @@ typedef struct TriangleParams {
     bool is_smooth;
 } TriangleParams;
 
+typedef struct IsosurfaceParams {
+    const Func *func;       /* of x, y, z */
+    const Shape *container; /* a box or sphere in the same space, not transformed */
+    double threshold;       /* inside is func <= threshold */
+} IsosurfaceParams;
+
 /* How much rounding a leaf's own numbers bring: derived when it is made or transformed. */
 typedef struct ShapeRounding {
     V3 row;       /* lengths of the rows of xform.from: object units per scene unit */
@@ -108,6 +115,7 @@ struct Shape {
         DiscParams disc;
         OvusParams ovus;
         TriangleParams triangle;
+        IsosurfaceParams iso;
         const MeshData *mesh; /* shared between instances, like those below */
         const PolygonData *polygon;
         const PrismData *prism;
@@ -204,6 +212,8 @@ Shape *shape_ovus(Arena *arena, double bottom, double top);
  * first and the last only set slopes. */
 Shape *shape_sor(Arena *arena, const V2 *points, int count, bool is_open);
 
+Shape *shape_isosurface(Arena *arena, const Func *func, double threshold, const Shape *container,
+                        bool is_open);
 /* kind: SHAPE_UNION, SHAPE_MERGE or SHAPE_INTERSECTION; children are borrowed. */
 Shape *shape_csg(Arena *arena, ShapeKind kind, Shape **children, int child_count);
 

@@ -120,11 +120,11 @@ static void begin_svg(const Script *s, const char *name, int width, int height)
 }
 
 /* The smallest and the largest of what is shown. */
-typedef struct Range {
+typedef struct AxisSpan {
     double lo, hi;
-} Range;
+} AxisSpan;
 
-static void extend(Range *range, double value)
+static void extend(AxisSpan *range, double value)
 {
     if (!(value > 0) || !isfinite(value))
         return;
@@ -133,7 +133,7 @@ static void extend(Range *range, double value)
 }
 
 /* Set a logarithmic axis to the range and a little more, with ticks at 1, 2 and 5 of each power. */
-static void set_axis(const Script *s, char axis, Range range, const char *unit)
+static void set_axis(const Script *s, char axis, AxisSpan range, const char *unit)
 {
     const double least = range.lo / 1.25, most = range.hi * 1.25;
     const char *comma = "";
@@ -150,9 +150,9 @@ static void set_axis(const Script *s, char axis, Range range, const char *unit)
     fputs(")\n", s->file);
 }
 
-static Range seconds_range(const Script *s)
+static AxisSpan seconds_range(const Script *s)
 {
-    Range range = {INFINITY, 0};
+    AxisSpan range = {INFINITY, 0};
     const StudyAnalysis *all = &s->study->analysis;
     for (int i = 0; i < all->row_count; i++)
         if (!isnan(all->rows[i].error))
@@ -161,9 +161,9 @@ static Range seconds_range(const Script *s)
 }
 
 /* Percent. */
-static Range error_range(const Script *s)
+static AxisSpan error_range(const Script *s)
 {
-    Range range = {INFINITY, 0};
+    AxisSpan range = {INFINITY, 0};
     const StudyAnalysis *all = &s->study->analysis;
     for (int i = 0; i < all->row_count; i++)
         extend(&range, 100 * all->rows[i].error);
@@ -171,9 +171,9 @@ static Range error_range(const Script *s)
     return range;
 }
 
-static Range trend_range(const Script *s, const StudyTrend *trend)
+static AxisSpan trend_range(const Script *s, const StudyTrend *trend)
 {
-    Range range = {INFINITY, 0};
+    AxisSpan range = {INFINITY, 0};
     for (int i = 0; i < trend->count; i++) {
         const StudyRow *row = row_of(s, trend, i);
         double spread = isnan(row->spread) ? 0 : row->spread;
@@ -181,7 +181,7 @@ static Range trend_range(const Script *s, const StudyTrend *trend)
         extend(&range, 100 * (row->error + spread));
     }
     double middle = sqrt(range.lo * range.hi); /* what hardly changes is to look flat */
-    return (Range){fmin(range.lo, middle / 1.5), fmax(range.hi, middle * 1.5)};
+    return (AxisSpan){fmin(range.lo, middle / 1.5), fmax(range.hi, middle * 1.5)};
 }
 
 /* Name, and how fast the error falls. */

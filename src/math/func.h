@@ -1,0 +1,99 @@
+/* Functions that scenes define, as code.
+ *
+ * The code of a function is a list of steps without jumps: each takes numbers from slots and puts
+ * one into a slot of its own.  The first slots are the parameters, then come constants.  So the
+ * same code yields values, derivatives, or bounds on both over whole stretches (interval
+ * arithmetic, rounded outward), and what is written twice is computed once.
+ *
+ * Comparisons are exact and yield 1 or 0; what is not 0 is true.  Outside of what a step is defined
+ * for (roots of negative numbers ...) values are no numbers.
+ * SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_MATH_FUNC_H
+#define PMS_MATH_FUNC_H
+
+#include "base/arena.h"
+#include "math/v3.h"
+
+#include <stdint.h>
+
+typedef enum FuncOp {
+#define X(id, count) id,
+#include "math/func.def"
+#undef X
+    FUNC_OP_COUNT
+} FuncOp;
+
+enum { FUNC_SLOTS_MAX = 1024, FUNC_PARAMS_MAX = 56, FUNC_FROM_MAX = 4 };
+
+typedef struct FuncStep {
+    uint16_t op;
+    uint16_t from[FUNC_FROM_MAX]; /* slots */
+} FuncStep;
+
+typedef struct Func {
+    int param_count, const_count, step_count;
+    const double *consts;
+    const FuncStep *steps;
+    int result; /* slot */
+} Func;
+
+/* All numbers from lo to hi. */
+typedef struct Range {
+    double lo, hi;
+} Range;
+
+#define RANGE_ALL ((Range){-INFINITY, INFINITY})
+
+/* Ranges of all slots of a function: of its values, and of its derivatives. */
+typedef struct FuncRanges {
+    Range value[FUNC_SLOTS_MAX], slope[FUNC_SLOTS_MAX];
+} FuncRanges;
+
+/* --- making --------------------------------------------------------------------------------- */
+
+/* A function being made.  Slots are numbers >= 0 for its users, too; NO_SLOT stands for all that
+ * follows from a function that became too long. */
+enum { NO_SLOT = -1 };
+
+typedef struct FuncBuilder {
+    int param_count, const_count, step_count;
+    double consts[FUNC_SLOTS_MAX];
+    FuncStep steps[FUNC_SLOTS_MAX]; /* from: numbers of nodes, see func.c */
+} FuncBuilder;
+
+void func_begin(FuncBuilder *builder, int param_count);
+
+/* Return the slot of a parameter, of a constant, of a step.  Steps of constants are computed at
+ * once; those that are there already are used again. */
+int func_param(const FuncBuilder *builder, int number);
+int func_const(FuncBuilder *builder, double value);
+int func_step(FuncBuilder *builder, FuncOp op, const int *from);
+
+/* Return the constant that a slot holds, or false. */
+bool func_is_const(const FuncBuilder *builder, int slot, double *value);
+
+/* Return the slot of a function's value for arguments in slots. */
+int func_call(FuncBuilder *builder, const Func *callee, const int *arguments);
+
+/* Return the function whose value is in a slot, in `arena`; NULL when memory is out. */
+const Func *func_end(Arena *arena, const FuncBuilder *builder, int result);
+
+/* --- asking (any thread) -------------------------------------------------------------------- */
+
+/* Return the value for param_count arguments. */
+double func_value(const Func *func, const double *arguments);
+
+/* Return the value, and its derivatives by the first three parameters; where the function jumps
+ * or bends, those of one side. */
+double func_gradient(const Func *func, const double *arguments, V3 *gradient);
+
+/* Bound the value over ranges of the arguments.  With rounding, the bounds hold for func_value.
+ *
+ * work  for func_slope. */
+Range func_range(const Func *func, const Range *arguments, FuncRanges *work);
+
+/* Bound the derivative along a stretch of which func_range was asked just before; `slopes` are
+ * those of the arguments along it.  It is RANGE_ALL where the value may jump. */
+Range func_slope(const Func *func, const Range *slopes, FuncRanges *work);
+
+#endif
