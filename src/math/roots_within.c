@@ -1,11 +1,11 @@
 /* Real roots of polynomials of any degree within an interval.
  *
- * The interval becomes [-1, 1].  Pieces of it are described by their Bernstein coefficients,
- * whose changes of sign bound the number of roots: none, or one that Newton steps kept inside a
- * bracket then find, or a single turning point whose height decides between two and none; all
- * other pieces are halved, at places where the sign is certain.  Every number goes with a bound on
- * its error, side by side so that both are computed at once.  What cannot be told from zero is
- * one root of odd or of even multiplicity, as the signs to both sides say.
+ * x is scaled so that the interval is within [-1, 1].  Pieces of it are described by their
+ * Bernstein coefficients, whose changes of sign bound the number of roots: none, or one that Newton
+ * steps kept inside a bracket then find, or a single turning point whose height decides between two
+ * and none; all other pieces are halved, at places where the sign is certain.  Every number goes
+ * with a bound on its error, side by side so that both are computed at once.  What cannot be told
+ * from zero is one root of odd or of even multiplicity, as the signs to both sides say.
  * SPDX-License-Identifier: Apache-2.0 */
 #include "math/roots.h"
 
@@ -29,11 +29,12 @@ enum {
 
 typedef struct Solver {
     int degree, count, cuts, most;
-    bool is_negative;    /* at the lower end */
-    Pair c[TERMS_MAX];   /* lowest first; error: that of the coefficient and of its use in a sum */
-    double widening;     /* bounds for pieces are as much wider than those for places */
-    double spare;        /* what more a piece allows for, in parts of a coefficient */
-    double middle, half; /* of the interval */
+    bool is_negative;  /* at the lower end */
+    Pair c[TERMS_MAX]; /* lowest first; error: that of the coefficient and of its use in a sum */
+    double widening;   /* bounds for pieces are as much wider than those for places */
+    double spare;      /* what more a piece allows for, in parts of a coefficient */
+    double scale;      /* x of the caller for 1 here */
+    double lo, hi;     /* the interval */
     Root *out;
 } Solver;
 
@@ -201,8 +202,8 @@ static void add_root(Solver *s, double x, double error)
 {
     if (s->count >= s->degree)
         return;
-    double place = s->middle + s->half * x;
-    s->out[s->count++] = (Root){place, s->half * error + 2 * EPS_DOUBLE * fabs(place)};
+    double place = s->scale * x;
+    s->out[s->count++] = (Root){place, s->scale * error + 2 * EPS_DOUBLE * fabs(place)};
 }
 
 /* Bound the error of the only root of [a, b]: as far from it the signs are certain. */
@@ -312,9 +313,13 @@ static void solve_turn(Solver *s, const Piece *piece)
     add_root(s, x, error);
 }
 
-/* A piece that cannot be told from zero. */
+/* A piece that cannot be told from zero.  At an end of the interval it may be what lies beyond that
+ * is zero: only the signs count there. */
 static void solve_zero(Solver *s, const Piece *piece)
 {
+    bool is_at_end = piece->a <= s->lo || piece->b >= s->hi;
+    if (is_at_end && piece->sign_a == piece->sign_b)
+        return;
     double x = 0.5 * (piece->a + piece->b), error = 0.5 * (piece->b - piece->a);
     add_root(s, x, error);
     if (piece->sign_a == piece->sign_b)
@@ -375,23 +380,20 @@ static void solve(Solver *s, Piece *piece)
 
 /* --- the whole interval -------------------------------------------------------------------- */
 
-/* Bring the coefficients to the interval; false when they come near to over- or underflow. */
-static bool solver_init(Solver *s, const double *c, const double *c_error, int degree)
+/* Scale x; false when the coefficients come near to over- or underflow. */
+static bool solver_init(Solver *s, const double *c, const double *c_error, int degree, double lo,
+                        double hi)
 {
-    double power = 1, a = fabs(s->middle), most = 0;
+    double power = 1, most = 0;
     s->degree = degree;
-    for (int i = 0; i <= degree; i++) {
-        s->c[i] = PAIR(c[i], (c_error ? c_error[i] : 0) +
-                                 (s->middle != 0 ? 2 * (degree + 1) * EPS_DOUBLE * fabs(c[i]) : 0));
-    }
-    if (a != 0)
-        for (int k = 0; k < degree; k++)
-            for (int i = degree - 1; i >= k; i--)
-                s->c[i] += s->c[i + 1] * PAIR(s->middle, a);
-    for (int i = 0; i <= degree; i++, power *= s->half) {
-        s->c[i] *= PAIR(power, power);
-        most = num_max(most, fabs(s->c[i][0]));
-        s->c[i][1] += 3 * (degree + 1) * EPS_DOUBLE * fabs(s->c[i][0]);
+    s->scale = num_max(fabs(lo), fabs(hi));
+    s->lo = lo / s->scale;
+    s->hi = hi / s->scale;
+    for (int i = 0; i <= degree; i++, power *= s->scale) {
+        double size = fabs(c[i] * power), least = TERMS_MAX * DBL_MIN; /* underflow */
+        s->c[i] = PAIR(c[i] * power, (c_error ? c_error[i] * power : 0) +
+                                         3 * (degree + 1) * EPS_DOUBLE * size + least);
+        most = num_max(most, size);
     }
     s->spare = (2 * FRESH_DEPTH * degree + 10) * EPS_DOUBLE;
     s->widening = 1 + s->spare / (3 * (degree + 1) * EPS_DOUBLE);
@@ -413,29 +415,36 @@ static int end_sign(const Solver *s, double x)
     return value_at(s, x).f < 0 ? -1 : 1;
 }
 
-static void solve_whole(Solver *s)
+/* Return where to cut first: at 0, where the coefficients have the most digits, or next to it; an
+ * end of the interval where there is no such place. */
+static double first_cut(const Solver *s)
 {
     static const double place[] = {0, 0x1p-6, -0x1p-6, 0x1p-4, -0x1p-4, 0.25, -0.25};
+    if (s->lo < 0 && s->hi > 0)
+        for (size_t i = 0; i < sizeof place / sizeof place[0]; i++)
+            if (place[i] > s->lo && place[i] < s->hi && sign_at_cut(s, place[i]) != 0)
+                return place[i];
+    return s->lo;
+}
+
+static void solve_whole(Solver *s)
+{
     s->is_negative = s->c[0][0] < 0;
     if (is_never_zero(s))
         return;
-    Piece piece, right;
-    piece_place(&piece, -1, 1, end_sign(s, -1), end_sign(s, 1), 0);
-    s->is_negative = piece.sign_a < 0;
-    for (size_t i = 0; i < sizeof place / sizeof place[0]; i++) {
-        int sign = sign_at_cut(s, place[i]);
-        if (sign == 0)
-            continue;
-        piece_place(&right, place[i], 1, sign, piece.sign_b, 0);
-        piece_place(&piece, -1, place[i], piece.sign_a, sign, 0);
+    Piece piece;
+    double cut = first_cut(s);
+    int sign_lo = end_sign(s, s->lo), sign_hi = end_sign(s, s->hi), sign = sign_lo;
+    s->is_negative = sign_lo < 0;
+    if (cut > s->lo) {
+        sign = end_sign(s, cut);
+        piece_place(&piece, s->lo, cut, sign_lo, sign, 0);
         piece_fill(s, &piece);
         solve(s, &piece);
-        if (s->count >= s->most)
-            return;
-        piece_fill(s, &right);
-        solve(s, &right);
-        return;
     }
+    if (s->count >= s->most)
+        return;
+    piece_place(&piece, cut, s->hi, sign, sign_hi, 0);
     piece_fill(s, &piece);
     solve(s, &piece);
 }
@@ -463,9 +472,7 @@ static int solve_scaled(Solver *s, const double *c, const double *c_error, int d
     }
     lo = ldexp(lo, -k);
     hi = ldexp(hi, -k);
-    s->middle = 0.5 * (lo + hi);
-    s->half = 0.5 * (hi - lo);
-    if (most == INT_MIN || !solver_init(s, scaled, error, degree))
+    if (most == INT_MIN || !solver_init(s, scaled, error, degree, lo, hi))
         return 0;
     solve_whole(s);
     for (int i = 0; i < s->count; i++)
@@ -484,6 +491,11 @@ static int solve_low(const double *c, const double *c_error, int degree, double 
     }
     Root all[2];
     int count = roots_quadratic(given, error, all), kept = 0;
+    if (count == 2 && all[0].x + all[0].error >= all[1].x - all[1].error) {
+        double middle = 0.5 * (all[0].x + all[1].x);
+        all[0].x = all[1].x = middle;
+        all[0].error = all[1].error = all[0].error + all[1].error;
+    }
     *is_negative = degree % 2 ? c[degree] > 0 : c[degree] < 0;
     for (int i = 0; i < count; i++) {
         if (all[i].x >= lo && all[i].x <= hi)
@@ -512,18 +524,20 @@ int roots_first(const double *c, const double *c_error, int degree, double lo, d
         return 0;
     if (degree <= 2)
         return solve_low(c, c_error, degree, lo, hi, is_negative, out);
-    if (!isfinite(lo) || !isfinite(hi)) {
-        double bound = roots_bound(c, degree);
-        lo = isfinite(lo) ? lo : -bound;
-        hi = isfinite(hi) ? hi : bound;
-        if (!(lo < hi)) { /* beyond all roots */
-            *is_negative = (c[degree] < 0) ^ (lo < 0 && degree % 2 == 1);
-            return 0;
-        }
+    double bound = c[degree] != 0 ? roots_bound(c, degree) : INFINITY;
+    if (bound == 0) /* a power of x */
+        bound = isfinite(lo) && isfinite(hi) ? INFINITY : 1;
+    if (!isfinite(bound) && !(isfinite(lo) && isfinite(hi)))
+        return 0;
+    if (lo >= bound || hi <= -bound) {
+        *is_negative = (c[degree] < 0) ^ (lo < 0 && degree % 2 == 1);
+        return 0;
     }
-    Solver s = {.middle = 0.5 * (lo + hi), .half = 0.5 * (hi - lo), .most = most, .out = out};
+    lo = num_max(lo, -bound);
+    hi = num_min(hi, bound);
+    Solver s = {.most = most, .out = out};
     int count = 0;
-    if (solver_init(&s, c, c_error, degree)) {
+    if (solver_init(&s, c, c_error, degree, lo, hi)) {
         solve_whole(&s);
         count = s.count;
     } else {

@@ -21,6 +21,11 @@ static const ObjectRule *object_rule(TokenKind word)
         {KW_TORUS, read_torus},
         {KW_PLANE, read_plane},
         {KW_DISC, read_disc},
+        {KW_QUADRIC, read_quadric},
+        {KW_CUBIC, read_cubic},
+        {KW_QUARTIC, read_quartic},
+        {KW_POLY, read_poly},
+        {KW_POLYNOMIAL, read_polynomial},
         {KW_TRIANGLE, read_triangle},
         {KW_SMOOTH_TRIANGLE, read_smooth_triangle},
         {KW_POLYGON, read_polygon},
@@ -245,7 +250,8 @@ static bool read_behaviour(Parser *p, Node *node)
 static bool is_sturm_shape(TokenKind word)
 {
     return word == KW_TORUS || word == KW_PRISM || word == KW_LATHE || word == KW_SOR ||
-           word == KW_OVUS || word == KW_OBJECT;
+           word == KW_OVUS || word == KW_CUBIC || word == KW_QUARTIC || word == KW_POLY ||
+           word == KW_POLYNOMIAL || word == KW_OBJECT;
 }
 
 /* Words that choose a method of POV-Ray's and change nothing in what is seen here. */

@@ -73,6 +73,17 @@ typedef struct OvusParams {
     double arc, height; /* radius of the arc between them, and height of its centre */
     double beyond;      /* how far that is beyond the axis */
 } OvusParams;
+typedef struct QuadricParams {
+    V3 square;       /* of x^2, y^2, z^2 */
+    V3 mixed;        /* of xy, xz, yz */
+    V3 linear;       /* these two about `center` */
+    double constant;
+    V3 center;       /* where the gradient is 0, or the origin */
+    V3 linear_doubt; /* bounds on the rounding of what was moved to the centre */
+    double doubt;
+} QuadricParams;
+
+typedef struct PolyData PolyData; /* shape/poly.c */
 
 typedef struct DiscParams {
     double hole, radius; /* in the plane z = 0, inside is z < 0 */
@@ -112,6 +123,8 @@ struct Shape {
         PlaneParams plane;
         ConeParams cone;
         TorusParams torus;
+        QuadricParams quadric;
+        const PolyData *poly;
         DiscParams disc;
         OvusParams ovus;
         TriangleParams triangle;
@@ -182,6 +195,13 @@ Shape *shape_cone(Arena *arena, V3 bottom, double bottom_radius, V3 top, double 
                   bool is_open);
 Shape *shape_plane(Arena *arena, V3 normal, double distance);
 Shape *shape_torus(Arena *arena, double major, double minor);
+/* square . (x^2, y^2, z^2) + mixed . (xy, xz, yz) + linear . (x, y, z) + constant = 0 */
+Shape *shape_quadric(Arena *arena, V3 square, V3 mixed, V3 linear, double constant);
+/* A polynomial of degree 2 to ROOTS_DEGREE_MAX; c: poly_term_count numbers, ordered by falling
+ * powers of x, then y, then z. */
+Shape *shape_poly(Arena *arena, int degree, const double *c);
+int poly_term_count(int degree);
+int poly_term_index(int degree, int i, int j, int k); /* of x^i y^j z^k */
 Shape *shape_disc(Arena *arena, V3 center, V3 normal, double radius, double hole);
 Shape *shape_triangle(Arena *arena, const V3 corner[3], const V3 *normal_or_null);
 Shape *shape_mesh(Arena *arena, const MeshData *mesh); /* after mesh_index */

@@ -48,12 +48,14 @@ static void test_random(void **state)
         double r[16], c[17], e[17], size = ldexp(1, (int)(rng_u32(&rng) % 80) - 40);
         for (int k = 0; k < n; k++) {
             r[k] = (2 * rng_double(&rng) - 1) * size;
+            if (i % 3 == 0) /* multiple ones away from the ends */
+                r[k] *= 0.8;
             if (i % 3 == 0 && k > 0 && rng_u32(&rng) % 3 == 0)
                 r[k] = r[k - 1];
         }
         expand(r, n, i & 8 ? -3 : 0.7, c, e);
         Root found[16];
-        int count = roots_within(c, e, n, -1.01 * size, 1.01 * size, found);
+        int count = roots_within(c, e, n, -1.1 * size, 1.1 * size, found);
         assert_true(count <= n);
         assert_covered(r, n, found, count);
         if (i % 3 != 0) {
