@@ -78,6 +78,7 @@ Node *read_prism(Parser *p);
 Node *read_lathe(Parser *p);
 Node *read_sor(Parser *p);
 Node *read_ovus(Parser *p);
+Node *read_sphere_sweep(Parser *p);
 Node *read_mesh(Parser *p);
 Node *read_mesh2(Parser *p);
 Node *read_isosurface(Parser *p);

@@ -34,6 +34,7 @@ static const ObjectRule *object_rule(TokenKind word)
         {KW_LATHE, read_lathe},
         {KW_SOR, read_sor},
         {KW_OVUS, read_ovus},
+        {KW_SPHERE_SWEEP, read_sphere_sweep},
         {KW_MESH, read_mesh},
         {KW_MESH2, read_mesh2},
         {KW_ISOSURFACE, read_isosurface},

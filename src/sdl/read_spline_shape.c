@@ -1,4 +1,4 @@
-/* The parameters of shapes made of curves: prism, lathe, sor, ovus.
+/* The parameters of shapes made of curves: prism, lathe, sor, ovus, sphere_sweep.
  *
  * Points that the language takes for the same are made the same here, to the last bit, so that
  * spans meet in their knots.  SPDX-License-Identifier: Apache-2.0 */
@@ -219,4 +219,61 @@ Node *read_ovus(Parser *p)
         return read_empty(p);
     }
     return read_leaf(p, shape_ovus(parse_arena(p), bottom, top));
+}
+
+/* --- sphere_sweep -------------------------------------------------------------------------- */
+
+/* One ball of a sweep as it is written. */
+typedef struct Ball {
+    double n[4]; /* centre, radius */
+} Ball;
+
+static Ball *read_balls(Parser *p, int count)
+{
+    Ball *balls = NULL;
+    size_t capacity = 0;
+    for (int i = 0; i < count; i++) {
+        if ((size_t)i == capacity)
+            balls = read_grow(p, balls, (size_t)i, &capacity, sizeof *balls);
+        V3 c = parse_v3(p);
+        parse_comma(p);
+        double radius = read_finite(p, "a radius of a sphere_sweep", NULL);
+        parse_comma(p);
+        balls[i] = (Ball){{c.x, c.y, c.z, radius}};
+    }
+    return balls;
+}
+
+/* Read which spline a sweep follows. */
+static SplineKind read_sweep_word(Parser *p)
+{
+    if (parse_accept(p, KW_LINEAR_SPLINE))
+        return SPLINE_LINEAR;
+    if (parse_accept(p, KW_B_SPLINE))
+        return SPLINE_B;
+    if (parse_accept(p, KW_CUBIC_SPLINE))
+        return SPLINE_CUBIC;
+    parse_fail_here(p, "in a sphere_sweep, which wants linear_spline, b_spline or cubic_spline");
+}
+
+Node *read_sphere_sweep(Parser *p)
+{
+    SplineKind kind = read_sweep_word(p);
+    parse_comma(p);
+    int count =
+        read_point_count(p, "the number of spheres of a sphere_sweep", spline_points_min(kind));
+    Ball *balls = read_balls(p, count);
+    if (parse_accept(p, KW_TOLERANCE)) {
+        read_finite(p, "tolerance", NULL);
+        parse_comma(p);
+    }
+    int span_count = spline_span_count(kind, count);
+    SweepSpan *spans = parse_alloc(p, (size_t)span_count * sizeof *spans);
+    for (int i = 0; i < span_count; i++) {
+        for (int axis = 0; axis < 3; axis++)
+            spline_span(kind, &balls->n[axis], 4, i, spans[i].c[axis]);
+        spline_span(kind, &balls->n[3], 4, i, spans[i].r);
+    }
+    return read_leaf(
+        p, shape_sphere_sweep(parse_arena(p), spline_degree(kind), spans, (uint32_t)span_count));
 }

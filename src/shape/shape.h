@@ -39,6 +39,7 @@ typedef struct MeshData MeshData;
 typedef struct PolygonData PolygonData;
 typedef struct PrismData PrismData;
 typedef struct RevolveData RevolveData;
+typedef struct SweepData SweepData;
 typedef struct ReachBlock ReachBlock;
 typedef struct PlaneBlock PlaneBlock;
 
@@ -133,6 +134,7 @@ struct Shape {
         const PolygonData *polygon;
         const PrismData *prism;
         const RevolveData *revolve; /* of lathe and sor */
+        const SweepData *sweep;
     } u;
     Shape **children; /* of a CSG node; difference is an intersection with inverted ones */
     int child_count;
@@ -224,6 +226,16 @@ Shape *shape_prism(Arena *arena, const PrismForm *form);
 /* Curves of (radius, height), turned around the y axis; open where they do not close.  spans: as in
  * PrismForm, but loops need not close. */
 Shape *shape_lathe(Arena *arena, int degree, const CurveSpan *spans, uint32_t count);
+
+/* All balls along a curve; negative radii are none. */
+typedef struct SweepSpan {
+    double c[3][SPLINE_POINTS_MAX]; /* Bernstein coefficients: of the centre's coordinates */
+    double r[SPLINE_POINTS_MAX];    /* and of the radius */
+} SweepSpan;
+
+/* degree: 1 or 3.  spans: at least one; each begins where the one before ends, to the last bit;
+ * borrowed. */
+Shape *shape_sphere_sweep(Arena *arena, int degree, const SweepSpan *spans, uint32_t count);
 
 /* Radii above 0, top < 2 bottom. */
 Shape *shape_ovus(Arena *arena, double bottom, double top);

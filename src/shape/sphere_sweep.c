@@ -1,0 +1,445 @@
+/* Sphere sweeps: all balls C(u), r(u) along a spline.  Parts: the spans; a crossing's u is the
+ * place on its span of the ball that it is on.
+ *
+ * A line is inside the ball at u from s - sqrt(D) to s + sqrt(D), where s(u) is how far along the
+ * line its centre is, and D(u) = r^2 - (distance of the centre from the line)^2.  Over a stretch of
+ * the span on which D is not negative these pieces of the line change without a jump: together they
+ * are one, from the least s - sqrt(D) to the largest s + sqrt(D).  Spans share the balls at
+ * their joints, so that there the pieces of both overlap and become one.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "math/bernstein.h"
+#include "shape/box_tree.h"
+#include "shape/shape_int.h"
+
+struct SweepData {
+    int degree;
+    uint32_t span_count;
+    const SweepSpan *spans;
+    BoxTree tree;
+    Bound box;
+    double size; /* largest coordinate or radius */
+};
+
+/* Return the box around a span, with room for rounding. */
+static Bound span_box(int degree, const SweepSpan *span)
+{
+    double lo[3], hi[3];
+    for (int axis = 0; axis < 3; axis++) {
+        double less[4], more[4];
+        for (int i = 0; i <= degree; i++) {
+            less[i] = span->c[axis][i] - span->r[i];
+            more[i] = span->c[axis][i] + span->r[i];
+        }
+        lo[axis] = INFINITY;
+        hi[axis] = -INFINITY;
+        bernstein_range(less, degree, &lo[axis], &hi[axis]);
+        bernstein_range(more, degree, &lo[axis], &hi[axis]);
+        double pad = 0x1p-46 * num_max(fabs(lo[axis]), fabs(hi[axis]));
+        lo[axis] -= pad;
+        hi[axis] += pad;
+    }
+    return (Bound){v3(lo[0], lo[1], lo[2]), v3(hi[0], hi[1], hi[2])};
+}
+
+Shape *shape_sphere_sweep(Arena *arena, int degree, const SweepSpan *spans, uint32_t count)
+{
+    Shape *shape = leaf_new(arena, SHAPE_SPHERE_SWEEP);
+    SweepData *data = ARENA_NEW(arena, SweepData);
+    Bound *boxes = ARENA_ARRAY(arena, Bound, count);
+    if (!shape || !data || !boxes)
+        return NULL;
+    *data = (SweepData){.degree = degree, .span_count = count, .spans = spans, .box = BOUND_EMPTY};
+    for (uint32_t i = 0; i < count; i++) {
+        boxes[i] = span_box(degree, &spans[i]);
+        data->box = bound_union(data->box, boxes[i]);
+    }
+    data->size = num_max(v3_max_abs(data->box.lo), v3_max_abs(data->box.hi));
+    if (!box_tree_new(arena, boxes, count, &data->tree))
+        return NULL;
+    shape->u.sweep = data;
+    leaf_place(shape, &XFORM_IDENTITY);
+    return shape;
+}
+
+/* --- a line and a span --------------------------------------------------------------------- */
+
+/* A line in units of length about a point f of it near the shape. */
+typedef struct SweepLine {
+    V3 f, e, p, q;      /* orthonormal: e along the line */
+    V3 inverse;         /* of e */
+    double base, speed; /* t = base + s / speed */
+} SweepLine;
+
+/* A span as a line sees it. */
+typedef struct SpanView {
+    int degree;
+    double s[4];                        /* how far along the line the centres are */
+    double d[BERNSTEIN_DEGREE_MAX + 1]; /* D: of twice the degree */
+    double discriminant;                /* of D, if the span is straight */
+} SpanView;
+
+static void view_span(const SweepData *data, const SweepSpan *span, const SweepLine *l, SpanView *v)
+{
+    int n = data->degree;
+    double p[4], q[4];
+    *v = (SpanView){.degree = n};
+    for (int i = 0; i <= n; i++) {
+        V3 c = v3_sub(v3(span->c[0][i], span->c[1][i], span->c[2][i]), l->f);
+        v->s[i] = v3_dot(c, l->e);
+        p[i] = v3_dot(c, l->p);
+        q[i] = v3_dot(c, l->q);
+    }
+    bernstein_add_product(span->r, span->r, n, 1, v->d);
+    bernstein_add_product(p, p, n, -1, v->d);
+    bernstein_add_product(q, q, n, -1, v->d);
+    if (n == 1) {
+        double rp = span->r[0] * p[1] - span->r[1] * p[0];
+        double rq = span->r[0] * q[1] - span->r[1] * q[0], pq = p[0] * q[1] - p[1] * q[0];
+        v->discriminant = rp * rp + rq * rq - pq * pq;
+    }
+}
+
+/* An end of a piece of the line: where, and of which ball. */
+typedef struct SweepEnd {
+    double s, u;
+} SweepEnd;
+
+/* Return the end of the ball at u: way -1 the first, 1 the last. */
+static SweepEnd ball_end(const SpanView *v, double way, double u)
+{
+    double slope, d = bernstein_at(v->d, 2 * v->degree, u, &slope);
+    return (SweepEnd){bernstein_value(v->s, v->degree, u) + way * sqrt(num_max(d, 0)), u};
+}
+
+/* Take an end if it is further out. */
+static void take_end(SweepEnd *best, double way, SweepEnd end)
+{
+    if (way * (end.s - best->s) > 0)
+        *best = end;
+}
+
+/* The end of a stretch [from, to] of a straight span: at one of its own ends, or where s + way
+ * sqrt(D) turns, which its derivative gives. */
+static SweepEnd straight_end(const SpanView *v, double way, double from, double to)
+{
+    SweepEnd best = ball_end(v, way, from);
+    take_end(&best, way, ball_end(v, way, to));
+    /* D = a u^2 + 2 b u + c turns there as k u = -b - way g s', k the cone's steepness. */
+    double c = v->d[0], b = v->d[1] - c, a = v->d[2] - v->d[1] - b, along = v->s[1] - v->s[0];
+    double steep = along * along - a;
+    if (!(v->discriminant > 0) || !(steep > 0))
+        return best;
+    double g = -way * along * sqrt(v->discriminant / steep);
+    double u = g * b > 0 ? (b * b - along * along * c) / (steep * (g + b)) : (g - b) / a;
+    if (u > from && u < to)
+        take_end(&best, way, ball_end(v, way, u));
+    return best;
+}
+
+/* Return a number whose sign is that of the derivative of way s + sqrt(D). */
+static double end_slope(const SpanView *v, double way, double u)
+{
+    double slope, along, d = bernstein_at(v->d, 2 * v->degree, u, &slope);
+    bernstein_at(v->s, v->degree, u, &along);
+    return slope + 2 * way * along * sqrt(num_max(d, 0));
+}
+
+/* Find where the derivative turns from positive to negative between lo and hi: by secants that do
+ * not get stuck at one side. */
+static double find_turn(const SpanView *v, double way, double lo, double hi)
+{
+    double g_lo = end_slope(v, way, lo), g_hi = end_slope(v, way, hi), last = 0;
+    if (!(g_lo > 0))
+        return lo;
+    if (!(g_hi < 0))
+        return hi;
+    for (int i = 0; i < 60 && hi - lo > 0x1p-50; i++) {
+        double u = (lo * g_hi - hi * g_lo) / (g_hi - g_lo);
+        if (!(u > lo && u < hi))
+            u = 0.5 * (lo + hi);
+        double g = end_slope(v, way, u);
+        if (g == 0)
+            return u;
+        if (g > 0) {
+            lo = u;
+            g_lo = g;
+            g_hi *= last > 0 ? 0.5 : 1;
+        } else {
+            hi = u;
+            g_hi = g;
+            g_lo *= last < 0 ? 0.5 : 1;
+        }
+        last = g;
+    }
+    return 0.5 * (lo + hi);
+}
+
+/* The end of a stretch, looked for from the best of some samples. */
+static SweepEnd sampled_end(const SpanView *v, double way, double from, double to, int samples)
+{
+    SweepEnd best = ball_end(v, way, from);
+    double step = (to - from) / samples;
+    int at = 0;
+    for (int i = 1; i <= samples; i++) {
+        SweepEnd end = ball_end(v, way, i == samples ? to : from + i * step);
+        if (way * (end.s - best.s) > 0) {
+            best = end;
+            at = i;
+        }
+    }
+    double lo = at > 0 ? from + (at - 1) * step : from;
+    double hi = at < samples - 1 ? from + (at + 1) * step : to;
+    take_end(&best, way, ball_end(v, way, find_turn(v, way, lo, hi)));
+    return best;
+}
+
+/* Does a polynomial go below -slack somewhere on [0, 1]? */
+static bool goes_below(const double *b, int degree, double slack, int depth)
+{
+    double low = INFINITY, half[2][BERNSTEIN_DEGREE_MAX + 1];
+    for (int i = 0; i <= degree; i++)
+        low = num_min(low, b[i]);
+    if (low >= -slack || depth == 0)
+        return false;
+    if (b[0] < -slack || b[degree] < -slack)
+        return true;
+    bernstein_part(b, degree, 0, 0.5, half[0]);
+    bernstein_part(b, degree, 0.5, 1, half[1]);
+    return goes_below(half[0], degree, slack, depth - 1) ||
+           goes_below(half[1], degree, slack, depth - 1);
+}
+
+/* Prove that no ball of the stretch reaches beyond an end: (s - s(u))^2 - D(u) is the power of that
+ * point with respect to the ball at u, and nowhere negative. */
+static bool is_proved(const SpanView *v, SweepEnd end, double from, double to)
+{
+    int n = v->degree;
+    double off[4], power[BERNSTEIN_DEGREE_MAX + 1], part[BERNSTEIN_DEGREE_MAX + 1], size = 0;
+    for (int i = 0; i <= n; i++)
+        off[i] = v->s[i] - end.s;
+    for (int i = 0; i <= 2 * n; i++) {
+        power[i] = -v->d[i];
+        size = num_max(size, fabs(v->d[i]));
+    }
+    bernstein_add_product(off, off, n, 1, power);
+    double slack = 0x1p-40 * size;
+    for (int side = 0; side < 2; side++) {
+        double a = side ? end.u : from, b = side ? to : end.u;
+        if (!(a < b))
+            continue;
+        bernstein_part(power, 2 * n, a, b, part);
+        if (goes_below(part, 2 * n, slack, 24))
+            return false;
+    }
+    return true;
+}
+
+/* Return an end of the stretch [from, to]. */
+static SweepEnd stretch_end(const SpanView *v, double way, double from, double to)
+{
+    enum { SAMPLES = 6, MANY_SAMPLES = 96 };
+    if (v->degree == 1)
+        return straight_end(v, way, from, to);
+    SweepEnd end = sampled_end(v, way, from, to, SAMPLES);
+    if (is_proved(v, end, from, to))
+        return end;
+    return sampled_end(v, way, from, to, MANY_SAMPLES);
+}
+
+/* Push the pieces of the line inside the balls of a span; t is s, child tells the order at one
+ * place: entries first. */
+static void push_span(const SweepData *data, uint32_t number, const SweepLine *l,
+                      ShapeScratch *scratch)
+{
+    SpanView v;
+    const SweepSpan *span = &data->spans[number];
+    view_span(data, span, l, &v);
+    double at[BERNSTEIN_DEGREE_MAX + 2], roots[BERNSTEIN_DEGREE_MAX];
+    int count = v.degree == 1 ? bernstein_quadratic(v.d, v.discriminant, roots)
+                              : bernstein_roots(v.d, 2 * v.degree, roots);
+    bool is_out = v.d[0] < 0;
+    at[0] = 0;
+    for (int i = 0; i < count; i++)
+        at[i + 1] = roots[i];
+    at[count + 1] = 1;
+    for (int i = is_out; i <= count; i += 2) {
+        double from = at[i], to = at[i + 1];
+        /* Between balls of positive and negative radius D is negative. */
+        if (bernstein_value(span->r, v.degree, 0.5 * (from + to)) < 0)
+            continue;
+        for (int end = 0; end < 2; end++) {
+            SweepEnd place = stretch_end(&v, end ? 1 : -1, from, to);
+            Crossing c = {.t = place.s,
+                          .part = number,
+                          .child = (uint32_t)end,
+                          .change = end ? -1 : 1,
+                          .u = place.u};
+            scratch_push(scratch, &c);
+        }
+    }
+}
+
+/* --- lines --------------------------------------------------------------------------------- */
+
+/* Does the line meet a box?  A line along a side is on it. */
+static bool meets_box(const SweepLine *l, const Bound *box)
+{
+    double near = -INFINITY, far = INFINITY;
+    for (int axis = 0; axis < 3; axis++) {
+        double o = v3_at(l->f, axis), inverse = v3_at(l->inverse, axis);
+        double a = (v3_at(box->lo, axis) - o) * inverse, b = (v3_at(box->hi, axis) - o) * inverse;
+        double first = a < b ? a : b, last = a < b ? b : a;
+        near = first > near ? first : near;
+        far = last < far ? last : far;
+    }
+    return !(near > far + 0x1p-44 * (fabs(near) + fabs(far)));
+}
+
+static void push_spans(const SweepData *data, const SweepLine *l, ShapeScratch *scratch)
+{
+    uint32_t stack[BOX_TREE_DEPTH_MAX], count = 1;
+    stack[0] = 0;
+    while (count) {
+        const BoxNode *node = &data->tree.nodes[stack[--count]];
+        if (!meets_box(l, &node->box))
+            continue;
+        for (uint32_t i = 0; i < node->count; i++)
+            push_span(data, data->tree.items[node->first + i], l, scratch);
+        if (!node->count) {
+            stack[count++] = node->first + 1;
+            stack[count++] = node->first;
+        }
+    }
+}
+
+static void line_begin(SweepLine *l, const SweepData *data, const LocalRay *ray)
+{
+    double speed2 = v3_len2(ray->d);
+    l->base = v3_dot(v3_sub(bound_center(data->box), ray->o), ray->d) / speed2;
+    l->speed = sqrt(speed2);
+    l->f = v3_mad(ray->o, l->base, ray->d);
+    l->e = v3_scale(ray->d, 1 / l->speed);
+    v3_frame(l->e, &l->p, &l->q);
+    l->inverse = v3(1 / l->e.x, 1 / l->e.y, 1 / l->e.z);
+}
+
+static V3 center_at(const SweepData *data, uint32_t number, double u)
+{
+    const SweepSpan *span = &data->spans[number];
+    return v3(bernstein_value(span->c[0], data->degree, u),
+              bernstein_value(span->c[1], data->degree, u),
+              bernstein_value(span->c[2], data->degree, u));
+}
+
+/* Finish a crossing that push_span has made. */
+static void finish(const Shape *shape, const SweepLine *l, const LocalRay *ray, Crossing *c)
+{
+    const SweepData *data = shape->u.sweep;
+    V3 n = v3_unit(v3_sub(v3_mad(l->f, c->t, l->e), center_at(data, c->part, c->u)));
+    double t = l->base + c->t / l->speed;
+    double off = v3_sum_abs(local_error(ray, t)) + PLACE_EPS * data->size;
+    c->t = t;
+    c->t_error = off / fabs(v3_dot(n, ray->d)) + 4 * EPS_DOUBLE * (fabs(l->base) + fabs(t));
+    c->leaf = shape;
+    c->leaf_change = c->change;
+    c->is_visible = true;
+    c->child = 0;
+}
+
+static bool sweep_list(const Shape *shape, const Line *line, ShapeScratch *scratch)
+{
+    LocalRay ray;
+    SweepLine l;
+    local_ray(shape, line->ray, &ray);
+    line_begin(&l, shape->u.sweep, &ray);
+    int base = scratch->count, written = base, depth = 0;
+    push_spans(shape->u.sweep, &l, scratch);
+    crossings_sort(scratch->items + base, scratch->count - base);
+    for (int i = base; i < scratch->count; i++) {
+        Crossing c = scratch->items[i];
+        int before = depth;
+        depth += c.change;
+        if (before > 0 && depth > 0)
+            continue;
+        finish(shape, &l, &ray, &c);
+        scratch->items[written++] = c;
+    }
+    scratch->count = written;
+    return false;
+}
+
+/* --- the rest ------------------------------------------------------------------------------ */
+
+static void sweep_point(const Shape *shape, const Crossing *crossing, V3 p, LocalPoint *out)
+{
+    const SweepData *data = shape->u.sweep;
+    V3 c = center_at(data, crossing->part, crossing->u), n = v3_unit(v3_sub(p, c));
+    double r = bernstein_value(data->spans[crossing->part].r, data->degree, crossing->u);
+    out->ng = v3_len2(n) > 0 ? n : v3(0, 1, 0);
+    out->p = v3_mad(c, r, out->ng);
+    out->error = 4 * PLACE_EPS * data->size;
+}
+
+/* Is p in a ball of the span? */
+static bool is_in_span(const SweepData *data, const SweepSpan *span, V3 p)
+{
+    int n = data->degree;
+    double power[BERNSTEIN_DEGREE_MAX + 1] = {0}, off[4], roots[BERNSTEIN_DEGREE_MAX];
+    for (int axis = 0; axis < 3; axis++) {
+        for (int i = 0; i <= n; i++)
+            off[i] = span->c[axis][i] - v3_at(p, axis);
+        bernstein_add_product(off, off, n, 1, power);
+    }
+    bernstein_add_product(span->r, span->r, n, -1, power);
+    int count = bernstein_roots(power, 2 * n, roots);
+    for (int i = power[0] >= 0; i <= count; i += 2) {
+        double from = i > 0 ? roots[i - 1] : 0, to = i < count ? roots[i] : 1;
+        if (bernstein_value(span->r, n, 0.5 * (from + to)) > 0)
+            return true;
+    }
+    return false;
+}
+
+static bool sweep_is_inside(const Shape *shape, V3 p)
+{
+    const SweepData *data = shape->u.sweep;
+    uint32_t stack[BOX_TREE_DEPTH_MAX], count = 1;
+    stack[0] = 0;
+    while (count) {
+        const BoxNode *node = &data->tree.nodes[stack[--count]];
+        const Bound *b = &node->box;
+        if (p.x < b->lo.x || p.x > b->hi.x || p.y < b->lo.y || p.y > b->hi.y || p.z < b->lo.z ||
+            p.z > b->hi.z)
+            continue;
+        for (uint32_t i = 0; i < node->count; i++)
+            if (is_in_span(data, &data->spans[data->tree.items[node->first + i]], p))
+                return true;
+        if (!node->count) {
+            stack[count++] = node->first + 1;
+            stack[count++] = node->first;
+        }
+    }
+    return false;
+}
+
+static Bound sweep_bound(const Shape *shape)
+{
+    return bound_pad(bound_transform(shape->u.sweep->box, &shape->xform));
+}
+
+static V3 sweep_farthest(const Shape *shape, V3 n)
+{
+    return bound_farthest(shape->u.sweep->box, n);
+}
+
+static double sweep_size(const Shape *shape)
+{
+    return shape->u.sweep->size;
+}
+
+const ShapeOps sphere_sweep_ops = {.list = sweep_list,
+                                   .point = sweep_point,
+                                   .is_inside = sweep_is_inside,
+                                   .bound = sweep_bound,
+                                   .farthest = sweep_farthest,
+                                   .size = sweep_size};
