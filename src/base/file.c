@@ -71,6 +71,29 @@ Status file_read(Diag *diag, const char *path, size_t limit_bytes, Arena *arena,
     return status;
 }
 
+/* Put the path of the folder that a file is in, without links, into `out`; false if there is none.
+ */
+static bool folder_of(const char *path, char out[PATH_MAX])
+{
+    char folder[PATH_MAX];
+    size_t length = (size_t)(path_base(path) - path);
+    if (length >= sizeof folder)
+        return false;
+    memcpy(folder, path, length);
+    folder[length] = '\0';
+    return realpath(length ? folder : ".", out) != NULL;
+}
+
+bool file_is_same(const char *a, const char *b)
+{
+    struct stat of_a, of_b;
+    if (stat(a, &of_a) == 0 && stat(b, &of_b) == 0)
+        return S_ISREG(of_a.st_mode) && of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
+    char in_a[PATH_MAX], in_b[PATH_MAX];
+    return folder_of(a, in_a) && folder_of(b, in_b) && strcmp(in_a, in_b) == 0 &&
+           strcmp(path_base(a), path_base(b)) == 0;
+}
+
 bool file_exists(const char *path)
 {
     struct stat info;

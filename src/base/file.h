@@ -24,6 +24,10 @@ Status file_open_input(Diag *diag, const char *path, int *fd, size_t *size);
 /* Return true if `path` names something that can be opened as a regular file. */
 bool file_exists(const char *path);
 
+/* Return true if what is written to one path would replace what is written to the other: the same
+ * name in the same folder, or two links to one file.  Devices and pipes replace nothing. */
+bool file_is_same(const char *a, const char *b);
+
 /* A file on its way: written under a temporary name beside its final one. */
 typedef struct OutFile {
     char path[FILE_PATH_MAX];      /* where it will be */

@@ -22,7 +22,7 @@ static FileKind kind_of(const char *path)
     return strcasecmp(extension, "png") == 0 ? FILE_PNG : FILE_UNKNOWN;
 }
 
-enum { META_MAX = 16, META_TEXT = 2048 };
+enum { META_MAX = 16, META_TEXT = 2048, OUTPUTS_MAX = 64 };
 
 /* The header fields, with room for their texts. */
 typedef struct Header {
@@ -192,10 +192,35 @@ static Status can_show(const Args *args)
     return show(args, pixel, 1, 3, &is_srgb);
 }
 
+/* Fail if two of the files that are to be written are one, or one of them is the scene: nobody
+ * wants only the last one. */
+static Status all_are_apart(const Args *args, const char *const *paths, int path_count)
+{
+    const char *all[OUTPUTS_MAX + 3];
+    int count = 0;
+    for (int i = 0; i < path_count && count < OUTPUTS_MAX; i++)
+        all[count++] = paths[i];
+    const char *others[] = {args->value[OPT_STATS], args->value[OPT_ERROR_MAP]};
+    for (int i = 0; i < 2; i++)
+        if (others[i] && strcmp(others[i], "-") != 0)
+            all[count++] = others[i];
+    for (int i = 0; i < args->operand_count; i++)
+        for (int k = 0; k < count; k++)
+            if (file_is_same(args->operands[i], all[k]))
+                return diag_fail(args->diag, ERR_USAGE, "'%s' would replace the scene", all[k]);
+    for (int i = 0; i < count; i++)
+        for (int k = 0; k < i; k++)
+            if (file_is_same(all[i], all[k]))
+                return diag_fail(args->diag, ERR_USAGE,
+                                 "two things are to be written to '%s': give each a name", all[i]);
+    return OK;
+}
+
 Status output_preflight(const Args *args, const char *const *paths, int path_count)
 {
     const char *stats = args->value[OPT_STATS];
     bool has_kind[FILE_PNG + 1] = {false};
+    TRY(all_are_apart(args, paths, path_count));
     for (int i = 0; i < path_count; i++) {
         FileKind kind = kind_of(paths[i]);
         if (kind == FILE_UNKNOWN)

@@ -44,10 +44,10 @@ static void show_line(const Progress *progress, const RenderProgress *now, int p
         snprintf(pass, sizeof pass, "pass %" PRIu64 ", ", now->pass);
     char error[64] = "";
     if (now->error > 0 && now->error_wanted > 0)
-        snprintf(error, sizeof error, "error %.3g %% of %.3g %%, ", 100 * now->error,
+        snprintf(error, sizeof error, "error below %.3g %%, %.3g %% wanted, ", 100 * now->error,
                  100 * now->error_wanted);
     else if (now->error > 0)
-        snprintf(error, sizeof error, "error %.3g %%, ", 100 * now->error);
+        snprintf(error, sizeof error, "error below %.3g %%, ", 100 * now->error);
     fprintf(stderr, "%s%s%s%s %d %%%s%s", progress->is_terminal ? "\r\033[K" : "", pass, error,
             now->phase, percent, left, progress->is_terminal ? "" : "\n");
     fflush(stderr);
@@ -69,10 +69,12 @@ void progress_tell_plan(void *ctx, const SeriesPlan *plan)
         fprintf(stderr, "}\n");
         return;
     }
-    fprintf(stderr, "pms: error %.3g %% after %" PRIu64 " passes; the plan: ", 100 * plan->error,
+    fprintf(stderr,
+            "pms: error below %.3g %% after %" PRIu64 " passes; the plan: ", 100 * plan->error,
             plan->passes_so_far);
-    if (isfinite(plan->passes))
-        fprintf(stderr, "about %.0f passes of %.2g s, ", ceil(plan->passes), plan->seconds);
+    double more = ceil(plan->passes - (double)plan->passes_so_far);
+    if (isfinite(more))
+        fprintf(stderr, "about %.0f more of %.2g s, ", more, plan->seconds);
     else
         fprintf(stderr, "passes of %.2g s, ", plan->seconds);
     if (plan->photons >= 1)
@@ -161,7 +163,7 @@ void progress_say_passes(const Progress *progress, const Args *args, const Rende
         fprintf(stderr, ", error %.3g %% (with 90 %% confidence below %.3g %%)",
                 100 * result->error.whole, 100 * result->error.bound);
     if (result->error.is_known && result->error.bound > error_wanted && error_wanted > 0)
-        fprintf(stderr, ", above the %.3g %% wanted", 100 * error_wanted);
+        fprintf(stderr, ", not sure to be below the %.3g %% wanted", 100 * error_wanted);
     fputs(", saved in", stderr);
     for (int i = 0; i < args->output_count; i++)
         fprintf(stderr, "%s '%s'", i ? "," : "", args->outputs[i]);

@@ -91,9 +91,11 @@ static Status tell_interrupted(const Job *job, const RenderResult *result)
 {
     if (result->passes == 0)
         return diag_fail(job->args->diag, ERR_INTERRUPTED, "interrupted; no picture was written");
-    return diag_fail(job->args->diag, ERR_INTERRUPTED,
-                     "interrupted; the picture is of %llu pass%s, --resume goes on from there",
-                     (unsigned long long)result->passes, result->passes == 1 ? "" : "es");
+    bool is_kept = args_has(job->args, OPT_PROGRESSIVE);
+    return diag_fail(
+        job->args->diag, ERR_INTERRUPTED, "interrupted; the picture is of %llu pass%s, %s",
+        (unsigned long long)result->passes, result->passes == 1 ? "" : "es",
+        is_kept ? "--resume goes on from there" : "which only --progressive keeps for --resume");
 }
 
 /* A progressive render that ends early has a picture all the same. */

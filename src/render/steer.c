@@ -19,9 +19,6 @@
  * is known by chance. */
 #define WORST_PART 0.8
 
-/* Noise aims below what is wanted: the bound is above the figure. */
-#define AIM 0.72
-
 /* Rounds of bisection for the logarithm of the level. */
 enum { LEVEL_ROUNDS = 20 };
 
@@ -149,13 +146,6 @@ static uint64_t passes_ahead(const ErrorFigure *figure, uint64_t passes, const S
     return 2 * (pairs < 1 ? 1 : pairs);
 }
 
-/* The standard error that makes the noise what the goal leaves it beside the bias. */
-static double level_wanted(const ErrorFigure *figure, const SteeringGoal *goal)
-{
-    double error = goal->error, bias = fmin(figure->bias, 0.8 * error);
-    return AIM * sqrt(error * error - bias * bias) / NORMAL_95;
-}
-
 void steering_plan(Steering *steering, const ErrorMap *map, const FilmSum halves[2],
                    const ErrorFigure *figure, uint64_t passes, const SteeringGoal *goal)
 {
@@ -170,8 +160,6 @@ void steering_plan(Steering *steering, const ErrorMap *map, const FilmSum halves
         return;
     weigh_pixels(&p);
     double level = affordable_level(&p, figure->noise);
-    if (goal->error > 0)
-        level = fmax(level, level_wanted(figure, goal));
     for (size_t i = 0; i < steering->pixels; i++)
         steering->rate[i] = (float)rate_for(&p, i, level);
 }

@@ -99,6 +99,10 @@ early "unknown view" --view=nowhere
 early "missing colour configuration" --ocio="$T/nowhere.ocio"
 early "bad number of bits" --bits=12
 early "statistics in a missing folder" --stats="$T/none/stats.json"
+early "statistics and picture in one file" --stats="$T/./a.png"
+early "errors and picture in one file" --error-map="$T/a.png"
+early "a picture twice" -o "$T/../$(basename "$T")/a.png"
+early "statistics over the scene" --stats="$T/s.pms"
 [ ! -e "$T/a.png" ] && ! ls "$T"/*.part* >/dev/null 2>&1
 ok $? "nothing half-written is left"
 
