@@ -124,6 +124,8 @@ Status out_begin(Diag *diag, const char *path, OutFile *out)
         return diag_fail(diag, ERR_FILE, "cannot write '%s': it is not a regular file", path);
     TRY(choose_names(diag, path, out));
     int fd = open(out->temp_path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (fd < 0 && errno == ENOENT)
+        return diag_fail(diag, ERR_FILE, "cannot write '%s': its folder does not exist", path);
     if (fd < 0)
         return refuse(diag, "write", path, errno);
     close(fd);

@@ -1,6 +1,8 @@
 /* The options of progressive rendering.  SPDX-License-Identifier: Apache-2.0 */
 #include "cli/args_int.h"
 
+#include "base/file.h"
+
 #include <limits.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -55,7 +57,9 @@ static Status read_error(const Args *args, double *error)
         return OK;
     char *end;
     double percent = strtod(text, &end);
-    bool is_percent = end != text && end[0] == '%' && !end[1];
+    bool is_number = end != text;
+    end += strspn(end, " ");
+    bool is_percent = is_number && end[0] == '%' && !end[1];
     if (!is_percent || !(percent >= ERROR_PERCENT_MIN && percent <= ERROR_PERCENT_MAX))
         return diag_fail(args->diag, ERR_USAGE,
                          "--error wants a percentage from %g%% to %g%% such as 2%%, got '%s'",
@@ -64,18 +68,27 @@ static Status read_error(const Args *args, double *error)
     return OK;
 }
 
-static Status state_path(const Args *args, const char **out)
+static Status state_of(const Args *args, const char *output, const char **out)
 {
-    if (args->output_count == 0)
-        return OK;
-    size_t length = strlen(args->outputs[0]);
+    size_t length = strlen(output);
     char *path = arena_alloc(args->arena, length + sizeof STATE_ENDING);
     if (!path)
         return diag_no_memory(args->diag, "the command line");
-    memcpy(path, args->outputs[0], length);
+    memcpy(path, output, length);
     memcpy(path + length, STATE_ENDING, sizeof STATE_ENDING);
     *out = path;
     return OK;
+}
+
+/* The state is beside the first output; that to resume from beside the first that has one. */
+static Status state_path(const Args *args, const char **out)
+{
+    for (int i = 0; i < args->output_count && args_has(args, OPT_RESUME); i++) {
+        TRY(state_of(args, args->outputs[i], out));
+        if (file_exists(*out))
+            return OK;
+    }
+    return args->output_count > 0 ? state_of(args, args->outputs[0], out) : OK;
 }
 
 Status args_progressive(const Args *args, RenderOptions *out)

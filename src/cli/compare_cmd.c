@@ -98,6 +98,11 @@ static Status compare_loaded(const Args *args, Image *a, Image *b)
     TRY(measure(args, a, b, &result));
     TRY(write_difference(args, a, b));
     print_all(args, &result, &z, corner);
+    if (args_has(args, OPT_Z_TEST) && result.max_error == 0)
+        diag_warn(
+            args->diag, WARN_VALUE, SPAN_NONE,
+            "the images are the same to the last bit: rendered with one seed, they say nothing "
+            "of their noise");
     TRY(z_test_check(args->diag, &z));
     return thresholds_check(args->diag, &limits, &result);
 }

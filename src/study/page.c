@@ -414,7 +414,12 @@ static void put_all_row(const Page *page, const StudyRow *row)
         fputs("<td></td>", page->file);
     else
         put_percent(page, "<td class=\"n\">", row->estimate, "</td>");
-    fprintf(page->file, "<td class=\"n\">%.3g</td><td class=\"n\">%.4f</td>", row->rmse, row->flip);
+    /* Nothing is left of what is not above the noise of the reference. */
+    if (row->rmse > 0)
+        fprintf(page->file, "<td class=\"n\">%.3g</td>", row->rmse);
+    else
+        fputs("<td class=\"n\">in the noise</td>", page->file);
+    fprintf(page->file, "<td class=\"n\">%.4f</td>", row->flip);
     if (isnan(row->spread))
         fputs("<td></td>", page->file);
     else

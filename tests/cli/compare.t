@@ -113,7 +113,7 @@ head -c 200 "$T/a.exr" >"$T/cut.exr"
 fails 3 "cannot read" "a truncated EXR" "$PMS" compare "$T/cut.exr" "$T/a.exr"
 head -c 60 "$T/a.png" >"$T/cut.png"
 fails 3 "cannot read" "a truncated PNG" "$PMS" compare "$T/a.png" "$T/cut.png"
-fails 3 "No such file" "a difference image in a folder that is not there" \
+fails 3 "folder does not exist" "a difference image in a folder that is not there" \
     "$PMS" compare "$T/a.png" "$T/b.png" --diff "$T/none/d.png"
 
 mkdir "$T/nothing" "$T/temp"
