@@ -15,7 +15,7 @@ B       := build/$(MODE)
 Q       := $(if $(V),,@)
 
 PACKAGES := build-essential pkg-config libembree-dev libopenexr-dev libopencolorio-dev \
-            libpng-dev libjpeg-dev libcmocka-dev libnanoflann-dev povray povray-includes \
+            libpng-dev libjpeg-dev libtiff-dev libgif-dev libfreetype-dev libcmocka-dev libnanoflann-dev povray povray-includes \
             povray-examples mandoc gnuplot-nox
 FLOORS   := $(shell sed 's/:.*//' src/FLOORS)
 CSRC     := $(foreach f,$(FLOORS),$(wildcard src/$(f)/*.c))
@@ -30,9 +30,9 @@ BENCH    := $(patsubst %.cpp,$(B)/%,$(wildcard tests/bench/*_bench.cpp)) \
             $(patsubst %.c,$(B)/%,$(wildcard tests/bench/*_bench.c))
 SHTESTS   = $(wildcard tests/house/*.t tests/cli/*.t tests/image/*.t)
 
-PKGS     := OpenEXR OpenColorIO libpng libjpeg
+PKGS     := OpenEXR OpenColorIO libpng libjpeg libtiff-4 freetype2
 PKGCF    := $(shell pkg-config --cflags $(PKGS) 2>/dev/null | sed 's/-I/-isystem /g')
-PKGLIB   := $(shell pkg-config --libs $(PKGS) 2>/dev/null) -lembree3
+PKGLIB   := $(shell pkg-config --libs $(PKGS) 2>/dev/null) -lembree3 -lgif
 
 WARN     := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wvla $(if $(WERROR),-Werror)
 CWARN    := -Wstrict-prototypes -Wmissing-prototypes

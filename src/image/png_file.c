@@ -7,14 +7,12 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "image/png_int.h"
 #include "image/srgb.h"
 
 #include <assert.h>
 #include <errno.h>
 #include <math.h>
-#include <png.h>
-#include <stdint.h>
-#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -25,20 +23,6 @@ enum {
     PNG_CHUNKS_MAX = 1000,          /* kept chunks; a file with more is refused */
     PNG_RATIO_MAX = 1100            /* deflate packs 1032 to 1 at best */
 };
-
-typedef struct PngJob {
-    Diag *diag;
-    const char *path;
-    FILE *file;
-    size_t file_bytes;
-    png_structp png;
-    png_infop info;
-    uint8_t *bytes;    /* the pixels as the file has them */
-    png_bytep *rows;   /* into bytes */
-    bool is_memory;    /* memory ran out */
-    int error;         /* errno at the time of the complaint */
-    char message[160]; /* libpng's complaint */
-} PngJob;
 
 static void fail_job(png_structp png, png_const_charp message)
 {
@@ -194,7 +178,7 @@ static void normalise(PngJob *job)
     png_read_update_info(job->png, job->info);
 }
 
-static bool open_stream(PngJob *job)
+static bool open_stream(PngJob *job, void (*prepare)(PngJob *job))
 {
     job->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, job, fail_job, ignore_warning, job,
                                         job_alloc, job_free);
@@ -213,7 +197,7 @@ static bool open_stream(PngJob *job)
                     (double)png_get_image_height(job->png, job->info);
     if (packed > (double)PNG_RATIO_MAX * (double)job->file_bytes)
         png_error(job->png, "the file ends too early");
-    normalise(job);
+    prepare(job);
     return true;
 }
 
@@ -226,8 +210,7 @@ static bool read_rows(PngJob *job)
     return true;
 }
 
-/* Return the exponent that brings the file's values to light, or 0 if they are sRGB. */
-static double file_gamma(PngJob *job)
+double png_job_gamma(PngJob *job)
 {
     int intent;
     double gamma;
@@ -265,11 +248,9 @@ static Status read_pixels(PngJob *job, Image *out)
     int channels = png_get_channels(job->png, job->info);
     int bits = png_get_bit_depth(job->png, job->info);
     assert((channels == 3 || channels == 4) && (bits == 8 || bits == 16));
-    double exponent = file_gamma(job);
+    double exponent = png_job_gamma(job);
 
-    TRY(alloc_rows(job, height, png_get_rowbytes(job->png, job->info)));
-    if (!read_rows(job))
-        return refuse(job, "read");
+    TRY(png_job_rows(job));
     image_init(out, (int)width, (int)height);
     ImageLayer *layer = image_add_layer(out, "", channels == 4 ? "RGBA" : "RGB");
     if (!layer)
@@ -282,22 +263,42 @@ static Status read_pixels(PngJob *job, Image *out)
     return OK;
 }
 
+Status png_job_begin(PngJob *job, void (*prepare)(PngJob *job))
+{
+    int fd;
+    TRY(file_open_input(job->diag, job->path, &fd, &job->file_bytes));
+    job->file = fdopen(fd, "rb");
+    if (!job->file) {
+        close(fd);
+        return diag_fail(job->diag, ERR_FILE, "cannot open '%s': %s", job->path, strerror(errno));
+    }
+    return open_stream(job, prepare) ? OK : refuse(job, "read");
+}
+
+Status png_job_rows(PngJob *job)
+{
+    TRY(alloc_rows(job, png_get_image_height(job->png, job->info),
+                   png_get_rowbytes(job->png, job->info)));
+    return read_rows(job) ? OK : refuse(job, "read");
+}
+
+void png_job_end(PngJob *job)
+{
+    png_destroy_read_struct(&job->png, &job->info, NULL);
+    if (job->file)
+        fclose(job->file);
+    mem_free(job->rows);
+    mem_free(job->bytes);
+}
+
 Status png_read(Diag *diag, const char *path, Image *out)
 {
     *out = (Image){0};
     PngJob job = {.diag = diag, .path = path};
-    int fd;
-    TRY(file_open_input(diag, path, &fd, &job.file_bytes));
-    job.file = fdopen(fd, "rb");
-    if (!job.file) {
-        close(fd);
-        return diag_fail(diag, ERR_FILE, "cannot open '%s': %s", path, strerror(errno));
-    }
-    Status status = open_stream(&job) ? read_pixels(&job, out) : refuse(&job, "read");
-    png_destroy_read_struct(&job.png, &job.info, NULL);
-    fclose(job.file);
-    mem_free(job.rows);
-    mem_free(job.bytes);
+    Status status = png_job_begin(&job, normalise);
+    if (status == OK)
+        status = read_pixels(&job, out);
+    png_job_end(&job);
     if (status != OK)
         image_done(out);
     return status;

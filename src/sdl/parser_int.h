@@ -228,9 +228,6 @@ void version_directive(Parser *p);
 void file_open(Parser *p, const char *path, Span call);
 /* Cut a source into tokens and remember it under its path. */
 TokenFile *file_lex(Parser *p, const Source *source);
-/* Find a file by the language's search order: as named, beside the including file, on the
- * library path, in the data folders.  Returns its path or NULL. */
-const char *file_find(Parser *p, const char *name, const char *const *extensions);
 
 /* --- value.c, array.c ------------------------------------------------------------------------ */
 

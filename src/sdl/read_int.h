@@ -4,6 +4,7 @@
 #ifndef PMS_SDL_READ_INT_H
 #define PMS_SDL_READ_INT_H
 
+#include "image/bitmap.h"
 #include "sdl/sdl_int.h"
 
 /* --- small helpers ---------------------------------------------------------------------------- */
@@ -79,6 +80,7 @@ Node *read_lathe(Parser *p);
 Node *read_sor(Parser *p);
 Node *read_ovus(Parser *p);
 Node *read_sphere_sweep(Parser *p);
+Node *read_height_field(Parser *p);
 Node *read_mesh(Parser *p);
 Node *read_mesh2(Parser *p);
 Node *read_isosurface(Parser *p);
@@ -89,6 +91,10 @@ Node *read_difference(Parser *p);
 
 /* light_source, after its opening brace up to and including the closing one. */
 Node *read_light_source(Parser *p);
+
+/* Read the kind (if given), name and gamma of an image file, and the file, found as include files
+ * are; returns the gamma, 1 if none is given.  bitmap_done is the caller's. */
+double read_image_file(Parser *p, Bitmap *out);
 
 /* Modifiers up to and including the closing brace of the object. */
 void read_object_modifiers(Parser *p, Node *node, TokenKind object_word);

@@ -35,6 +35,7 @@ static const ObjectRule *object_rule(TokenKind word)
         {KW_SOR, read_sor},
         {KW_OVUS, read_ovus},
         {KW_SPHERE_SWEEP, read_sphere_sweep},
+        {KW_HEIGHT_FIELD, read_height_field},
         {KW_MESH, read_mesh},
         {KW_MESH2, read_mesh2},
         {KW_ISOSURFACE, read_isosurface},
@@ -265,8 +266,9 @@ static bool read_method(Parser *p, TokenKind object_word)
         fits = is_sturm_shape(object_word);
         where = "sturm fits shapes made of polynomials only";
     } else if (kind == KW_HIERARCHY) {
-        fits = object_word == KW_MESH || object_word == KW_MESH2 || object_word == KW_OBJECT;
-        where = "hierarchy fits a mesh only";
+        fits = object_word == KW_MESH || object_word == KW_MESH2 || object_word == KW_OBJECT ||
+               object_word == KW_HEIGHT_FIELD;
+        where = "hierarchy fits a mesh or height_field only";
     } else if (kind == KW_SPLIT_UNION) {
         fits = object_word == KW_UNION || object_word == KW_MERGE || object_word == KW_COMPOSITE ||
                object_word == KW_OBJECT;

@@ -101,6 +101,9 @@ bool parse_is_color(Parser *p);
 const char *parse_string(Parser *p);
 /* The same for the name of a file: a literal keeps its backslashes. */
 const char *parse_path(Parser *p);
+/* Find a file by the language's search order: as named, beside the including file, on the
+ * library path, in the data folders.  Returns its path or NULL. */
+const char *file_find(Parser *p, const char *name, const char *const *extensions);
 /* Say how the bytes of string literals from here on are read (charset; ASCII at first). */
 void parse_set_utf8(Parser *p, bool is_utf8);
 /* Return true if the next token can begin a float or vector expression. */

@@ -40,6 +40,7 @@ typedef struct PolygonData PolygonData;
 typedef struct PrismData PrismData;
 typedef struct RevolveData RevolveData;
 typedef struct SweepData SweepData;
+typedef struct HeightData HeightData;
 typedef struct ReachBlock ReachBlock;
 typedef struct PlaneBlock PlaneBlock;
 
@@ -135,6 +136,7 @@ struct Shape {
         const PrismData *prism;
         const RevolveData *revolve; /* of lathe and sor */
         const SweepData *sweep;
+        const HeightData *height_field;
     } u;
     Shape **children; /* of a CSG node; difference is an intersection with inverted ones */
     int child_count;
@@ -246,6 +248,7 @@ Shape *shape_sor(Arena *arena, const V2 *points, int count, bool is_open);
 
 Shape *shape_isosurface(Arena *arena, const Func *func, double threshold, const Shape *container,
                         bool is_open);
+Shape *shape_height_field(Arena *arena, const HeightData *data); /* after height_prepare */
 /* kind: SHAPE_UNION, SHAPE_MERGE or SHAPE_INTERSECTION; children are borrowed. */
 Shape *shape_csg(Arena *arena, ShapeKind kind, Shape **children, int child_count);
 

@@ -52,6 +52,12 @@ static Bound plane_reach(const Shape *shape)
     return plane_inside_bound(&plane);
 }
 
+/* Does a leaf have an inside beyond the box of what is seen of it? */
+static bool is_endless(const Shape *leaf)
+{
+    return leaf->kind == SHAPE_DISC || leaf->kind == SHAPE_HEIGHT_FIELD;
+}
+
 Bound shape_reach(const Shape *shape, bool *is_inside_beyond)
 {
     *is_inside_beyond = shape->is_inside_beyond;
@@ -63,7 +69,7 @@ Bound shape_reach(const Shape *shape, bool *is_inside_beyond)
     else if (shape->kind >= SHAPE_UNION)
         box = union_reach(shape, is_inside_beyond);
     else
-        box = shape->kind == SHAPE_DISC ? BOUND_ALL : shape_ops(shape)->bound(shape);
+        box = is_endless(shape) ? BOUND_ALL : shape_ops(shape)->bound(shape);
     if (shape->kind == SHAPE_PLANE) /* half the world: nothing beyond is inside */
         box = plane_reach(shape);
     else if (shape->is_inverted)

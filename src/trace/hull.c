@@ -159,6 +159,8 @@ static Side leaf_side(const Hull *hull, const Shape *shape)
         return disc_side(&local);
     case SHAPE_MESH:
         return around_side(&local, shape->u.mesh->bound.lo, shape->u.mesh->bound.hi);
+    case SHAPE_HEIGHT_FIELD: /* as a member of CSG it has no end below */
+        return SIDE_TOUCHES;
     default:
         return world_box_side(hull, shape);
     }

@@ -16,10 +16,11 @@ if command -v dpkg-query >/dev/null 2>&1; then
     exec $sudo apt-get install -q -y --no-install-recommends $missing >&2
 fi
 command -v pkg-config >/dev/null 2>&1 && command -v prove >/dev/null 2>&1 &&
-    pkg-config --exists OpenEXR OpenColorIO libpng cmocka && exit 0
+    pkg-config --exists OpenEXR OpenColorIO libpng libtiff-4 freetype2 cmocka && exit 0
 cat >&2 <<EOF
 pms needs: a C17 and a C++17 compiler, GNU make, pkg-config, prove (perl), and the libraries
-Embree 3, OpenEXR 3.1, OpenColorIO 2.1, libpng, libjpeg-turbo, cmocka; the comparisons also use
+Embree 3, OpenEXR 3.1, OpenColorIO 2.1, libpng, libjpeg-turbo, libtiff 4.5,
+giflib, FreeType, cmocka; the comparisons also use
 nanoflann and povray 3.7.  The names of the Debian packages are:
     $*
 EOF
