@@ -409,11 +409,10 @@ static void read_body(FunctionReader *r, Value *out)
     *out = (Value){.kind = VALUE_FUNCTION, .node = func};
 }
 
-void parse_function(Parser *p, Value *out)
+/* Read a function from its parameters on. */
+static void read_function(Parser *p, Value *out)
 {
-    HoldState hold = hold_aside(p);
     FunctionReader r = {.p = p};
-    parse_expect(p, KW_FUNCTION, "a value");
     read_parameters(&r);
     parse_expect(p, TOKEN_LBRACE, "function");
     const Token *first = parse_peek(p);
@@ -424,6 +423,25 @@ void parse_function(Parser *p, Value *out)
     else
         read_body(&r, out);
     parse_expect(p, TOKEN_RBRACE, "the function");
+}
+
+void parse_function(Parser *p, Value *out)
+{
+    HoldState hold = hold_aside(p);
+    parse_expect(p, KW_FUNCTION, "a value");
+    read_function(p, out);
+    hold_restore(p, hold);
+}
+
+void parse_grid_function(Parser *p, long most, int *columns, int *rows, Value *out)
+{
+    HoldState hold = hold_aside(p);
+    parse_expect(p, KW_FUNCTION, "a value");
+    *columns = (int)parse_int(p, "the width of a function's image", 1, most);
+    parse_comma(p);
+    *rows = (int)parse_int(p, "the height of a function's image", 1, most);
+    parse_comma(p);
+    read_function(p, out);
     hold_restore(p, hold);
 }
 

@@ -265,6 +265,8 @@ V3 terms_v3(Parser *p, const Terms *terms, Span begin);
 
 /* Read function { ... }. */
 void parse_function(Parser *p, Value *out);
+/* Read function COLUMNS, ROWS { ... }: an image of at most `most` pixels a side. */
+void parse_grid_function(Parser *p, long most, int *columns, int *rows, Value *out);
 /* Work out a call of a function whose name has been taken. */
 void parse_function_call(Parser *p, const Value *function, Span name, Terms *out);
 /* Return the function of the language's library that has this number, or NULL: pms has it not

@@ -1,8 +1,12 @@
 /* Image files that scenes name, and height_field.  SPDX-License-Identifier: Apache-2.0 */
+#include "sdl/parser_int.h"
 #include "sdl/read_int.h"
 
 #include "image/bitmap_height.h"
+#include "math/func.h"
 #include "shape/height_field.h"
+
+enum { HEIGHT_FUNCTION_MAX = 20000 }; /* pixels a side of a function's image */
 
 /* Take the word of a kind of image; BITMAP_KIND_COUNT if none comes next. */
 static BitmapKind read_image_kind(Parser *p)
@@ -39,6 +43,8 @@ double read_image_file(Parser *p, Bitmap *out)
     if (parse_accept(p, KW_GAMMA))
         gamma = read_above_zero(p, "the gamma of an image");
     Status status = bitmap_read(parse_diag(p), path, kind, out);
+    if (status == ERR_FILE)
+        parse_fail(p, span, "the image '%s' cannot be used", name);
     if (status != OK)
         parse_fail_status(p, status);
     return gamma;
@@ -63,6 +69,30 @@ static void read_heights(Parser *p, HeightData *data)
     data->rows = bitmap.height;
 }
 
+/* Take the heights of a function of x and y, from 0 to 1 each, the image's upper row first. */
+static void read_function_heights(Parser *p, HeightData *data)
+{
+    Value value;
+    Span span = parse_peek(p)->span;
+    parse_grid_function(p, HEIGHT_FUNCTION_MAX, &data->columns, &data->rows, &value);
+    const Func *func = value.node;
+    if (!func || func->param_count > 3)
+        parse_fail(p, span_join(span, parse_last_span(p)),
+                   "a height_field wants a function of up to 3 parameters");
+    size_t wide = (size_t)data->columns;
+    uint16_t *heights = parse_alloc(p, wide * (size_t)data->rows * sizeof *heights);
+    for (int row = 0; row < data->rows; row++) {
+        for (int column = 0; column < data->columns; column++) {
+            const double at[3] = {column / fmax(data->columns - 1, 1),
+                                  row / fmax(data->rows - 1, 1), 0};
+            double height = func_value(func, at) * UINT16_MAX;
+            uint16_t *to = heights + (size_t)(data->rows - 1 - row) * wide + (size_t)column;
+            *to = height > 0 ? (uint16_t)(height < UINT16_MAX ? height : UINT16_MAX) : 0;
+        }
+    }
+    data->heights = heights;
+}
+
 /* Read one of the settings after the image; returns false if none comes next. */
 static bool read_height_item(Parser *p, HeightData *data)
 {
@@ -85,8 +115,9 @@ Node *read_height_field(Parser *p)
 {
     HeightData *data = parse_alloc(p, sizeof *data);
     if (parse_peek(p)->kind == KW_FUNCTION)
-        parse_fail_not_yet(p, parse_peek(p)->span, "height_field with a function");
-    read_heights(p, data);
+        read_function_heights(p, data);
+    else
+        read_heights(p, data);
     while (read_height_item(p, data))
         ;
     if (data->columns < 2 || data->rows < 2)
