@@ -24,7 +24,10 @@ static int sign_changes(const double *b, int degree)
     return changes;
 }
 
-double bernstein_at(const double *b, int degree, double x, double *slope)
+/* de Casteljau's scheme, for a degree that the compiler knows. */
+#define ALWAYS_INLINE static inline __attribute__((always_inline))
+
+ALWAYS_INLINE double at_of_degree(const double *b, int degree, double x, double *slope)
 {
     double p[BERNSTEIN_DEGREE_MAX + 1], y = 1 - x;
     for (int i = 0; i <= degree; i++)
@@ -32,12 +35,26 @@ double bernstein_at(const double *b, int degree, double x, double *slope)
     for (int k = degree; k > 1; k--)
         for (int i = 0; i < k; i++)
             p[i] = y * p[i] + x * p[i + 1];
-    if (degree == 0) {
-        *slope = 0;
-        return p[0];
-    }
     *slope = degree * (p[1] - p[0]);
     return y * p[0] + x * p[1];
+}
+
+double bernstein_at(const double *b, int degree, double x, double *slope)
+{
+    switch (degree) {
+    case 1:
+        return at_of_degree(b, 1, x, slope);
+    case 2:
+        return at_of_degree(b, 2, x, slope);
+    case 3:
+        return at_of_degree(b, 3, x, slope);
+    case 4:
+        return at_of_degree(b, 4, x, slope);
+    case 5:
+        return at_of_degree(b, 5, x, slope);
+    default:
+        return at_of_degree(b, 6, x, slope);
+    }
 }
 
 double bernstein_value(const double *b, int degree, double x)
@@ -50,8 +67,7 @@ double bernstein_value(const double *b, int degree, double x)
     return y * y * (y * b[0] + 3 * x * b[1]) + x * x * (3 * y * b[2] + x * b[3]);
 }
 
-/* Split at x: the coefficients of both sides. */
-static void split(const double *b, int degree, double x, double *lo, double *hi)
+ALWAYS_INLINE void split_of_degree(const double *b, int degree, double x, double *lo, double *hi)
 {
     double y = 1 - x;
     for (int i = 0; i <= degree; i++)
@@ -64,9 +80,67 @@ static void split(const double *b, int degree, double x, double *lo, double *hi)
     }
 }
 
+/* Split at x: the coefficients of both sides. */
+static void split(const double *b, int degree, double x, double *lo, double *hi)
+{
+    switch (degree) {
+    case 3:
+        split_of_degree(b, 3, x, lo, hi);
+        break;
+    case 4:
+        split_of_degree(b, 4, x, lo, hi);
+        break;
+    case 6:
+        split_of_degree(b, 6, x, lo, hi);
+        break;
+    default:
+        split_of_degree(b, degree, x, lo, hi);
+    }
+}
+
+ALWAYS_INLINE void center_of_degree(const double *b, int degree, BernsteinCenter *out)
+{
+    double lo[BERNSTEIN_DEGREE_MAX + 1], hi[BERNSTEIN_DEGREE_MAX + 1] = {0}, factor = 1;
+    split_of_degree(b, degree, 0.5, lo, hi);
+    /* The k-th difference of the upper half's coefficients, times the binomial, times 2^k. */
+    out->degree = degree;
+    out->c[0] = hi[0];
+    for (int k = 1; k <= degree; k++) {
+        for (int i = 0; i <= degree - k; i++)
+            hi[i] = hi[i + 1] - hi[i];
+        factor = factor * (2 * (degree - k + 1)) / k;
+        out->c[k] = factor * hi[0];
+    }
+}
+
+void bernstein_center(const double *b, int degree, BernsteinCenter *out)
+{
+    switch (degree) {
+    case 3:
+        center_of_degree(b, 3, out);
+        break;
+    case 4:
+        center_of_degree(b, 4, out);
+        break;
+    case 6:
+        center_of_degree(b, 6, out);
+        break;
+    default:
+        center_of_degree(b, degree, out);
+    }
+}
+
 void bernstein_part(const double *b, int degree, double from, double to, double *out)
 {
     double rest[BERNSTEIN_DEGREE_MAX + 1] = {0}, unused[BERNSTEIN_DEGREE_MAX + 1];
+    if (from == 0) {
+        split(b, degree, to, out, unused);
+        return;
+    }
+    if (to == 1) {
+        split(b, degree, from, unused, out);
+        return;
+    }
     split(b, degree, from, unused, rest);
     double share = from < 1 ? (to - from) / (1 - from) : 0;
     split(rest, degree, share, out, unused);
@@ -118,16 +192,17 @@ int bernstein_quadratic(const double b[3], double discriminant, double out[2])
 
 /* Find the one root, by the signs of the ends: Newton steps, halving where they leave the bracket
  * or do not shrink it fast. */
-static double find_only(const double *b, int degree)
+ALWAYS_INLINE double find_of_degree(const double *b, int degree)
 {
     double lo = 0, hi = 1, x = b[0] / (b[0] - b[degree]);
     bool is_rising = b[0] < 0;
-    if (degree == 1)
-        return x;
+    BernsteinCenter center;
+    center_of_degree(b, degree, &center);
+    center.degree = degree;
     if (!(x > 0 && x < 1))
         x = 0.5;
     for (int i = 0; i < 100; i++) {
-        double slope, value = bernstein_at(b, degree, x, &slope);
+        double slope, value = bernstein_center_at(&center, x, &slope);
         if ((value < 0) == is_rising)
             lo = x;
         else
@@ -137,11 +212,29 @@ static double find_only(const double *b, int degree)
             next = 0.5 * (lo + hi);
             step = next - x;
         }
-        if (fabs(step) <= 0x1p-52)
-            return next;
         x = next;
+        if (fabs(step) <= 0x1p-26)
+            break;
     }
-    return x;
+    /* The last step, with all digits. */
+    double slope, value = bernstein_at(b, degree, x, &slope), next = x - value / slope;
+    return next >= 0 && next <= 1 ? next : x;
+}
+
+static double find_only(const double *b, int degree)
+{
+    switch (degree) {
+    case 1:
+        return b[0] / (b[0] - b[1]);
+    case 3:
+        return find_of_degree(b, 3);
+    case 4:
+        return find_of_degree(b, 4);
+    case 6:
+        return find_of_degree(b, 6);
+    default:
+        return find_of_degree(b, degree);
+    }
 }
 
 static void isolate(const double *b, double lo, double hi, int depth, RootList *list)

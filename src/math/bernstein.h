@@ -22,6 +22,25 @@ int bernstein_quadratic(const double b[3], double discriminant, double out[2]);
 /* Return the value at x, and the derivative. */
 double bernstein_at(const double *b, int degree, double x, double *slope);
 
+/* The same polynomial in powers of x - 1/2: faster, and few digits worse. */
+typedef struct BernsteinCenter {
+    int degree;
+    double c[BERNSTEIN_DEGREE_MAX + 1];
+} BernsteinCenter;
+
+void bernstein_center(const double *b, int degree, BernsteinCenter *out);
+
+static inline double bernstein_center_at(const BernsteinCenter *p, double x, double *slope)
+{
+    double h = x - 0.5, value = p->c[p->degree], rise = 0;
+    for (int i = p->degree - 1; i >= 0; i--) {
+        rise = rise * h + value;
+        value = value * h + p->c[i];
+    }
+    *slope = rise;
+    return value;
+}
+
 /* Return the value at x alone; degree up to 3. */
 double bernstein_value(const double *b, int degree, double x);
 

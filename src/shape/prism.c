@@ -257,21 +257,25 @@ static void push_walls(const PrismLine *l, ShapeScratch *scratch)
 }
 
 /* Finish a crossing of a wall that push_walls has made. */
-static Crossing wall_crossing(const Shape *shape, const PrismLine *l, const Crossing *found,
-                              bool is_entry)
+static Crossing wall_crossing(const Shape *shape, const PrismLine *l, const Line *line,
+                              const Crossing *found, bool is_entry)
 {
     const PrismForm *form = &l->prism->form;
-    WallPlace at = wall_at(l->prism, found->part, found->u);
     double t = l->base + found->t / l->speed, y = l->f.y + found->t * l->e.y;
     /* Along a rising curve the normal points the way the line goes; beyond the tip all is turned
      * round. */
     bool is_along = (found->v > 0) != (form->is_conic && y < 0);
-    double size = l->prism->reach * (form->is_conic ? num_max(fabs(form->lo), fabs(form->hi)) : 1);
-    double off = v3_sum_abs(local_error(l->ray, t)) + PLACE_EPS * size;
-    double error = off * v3_len(at.n) / fabs(v3_dot(at.n, l->ray->d));
+    double error = 4 * EPS_DOUBLE * (fabs(l->base) + fabs(t));
+    if (line_wants(line, t)) {
+        WallPlace at = wall_at(l->prism, found->part, found->u);
+        double height = num_max(fabs(form->lo), fabs(form->hi));
+        double size = l->prism->reach * (form->is_conic ? height : 1);
+        double off = v3_sum_abs(local_error(l->ray, t)) + PLACE_EPS * size;
+        error += off * v3_len(at.n) / fabs(v3_dot(at.n, l->ray->d));
+    }
     int8_t change = is_entry ? 1 : -1;
     return (Crossing){.t = t,
-                      .t_error = error + 4 * EPS_DOUBLE * (fabs(l->base) + fabs(t)),
+                      .t_error = error,
                       .leaf = shape,
                       .part = found->part,
                       .change = change,
@@ -337,7 +341,7 @@ static bool prism_list(const Shape *shape, const Line *line, ShapeScratch *scrat
         if (found->t < l.in || found->t >= l.out)
             continue;
         is_inside = !is_inside;
-        Crossing wall = wall_crossing(shape, &l, found, is_inside);
+        Crossing wall = wall_crossing(shape, &l, line, found, is_inside);
         scratch->items[written++] = wall;
     }
     scratch->count = written;

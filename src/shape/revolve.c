@@ -229,18 +229,21 @@ static V3 piece_normal(const RevolveData *data, const RevolvePiece *piece, doubl
 }
 
 /* Finish a crossing found by push_piece or push_lids. */
-static void finish(const Shape *shape, const RevolveLine *l, const LocalRay *ray, bool is_entry,
-                   Crossing *c)
+static void finish(const Shape *shape, const RevolveLine *l, const LocalRay *ray, const Line *line,
+                   bool is_entry, Crossing *c)
 {
     const RevolveData *data = shape->u.revolve;
     double s = c->t, t = l->base + s / l->speed;
     bool is_lid = c->part >= data->piece_count;
-    V3 n = v3(0, 1, 0);
-    if (!is_lid)
-        n = piece_normal(data, &data->pieces[c->part], c->u, v3_mad(l->f, s, l->e));
-    double off = v3_sum_abs(local_error(ray, t)) + PLACE_EPS * revolve_size(shape);
     c->t = t;
-    c->t_error = off / fabs(v3_dot(n, ray->d)) + 4 * EPS_DOUBLE * (fabs(l->base) + fabs(t));
+    c->t_error = 4 * EPS_DOUBLE * (fabs(l->base) + fabs(t));
+    if (line_wants(line, t)) {
+        V3 n = v3(0, 1, 0);
+        if (!is_lid)
+            n = piece_normal(data, &data->pieces[c->part], c->u, v3_mad(l->f, s, l->e));
+        double off = v3_sum_abs(local_error(ray, t)) + PLACE_EPS * revolve_size(shape);
+        c->t_error += off / fabs(v3_dot(n, ray->d));
+    }
     c->leaf = shape;
     c->change = c->leaf_change = is_entry ? 1 : -1;
     c->is_visible = !(is_lid && shape->is_open);
@@ -259,7 +262,7 @@ bool revolve_list(const Shape *shape, const Line *line, ShapeScratch *scratch)
     push_lids(shape->u.revolve, &l, scratch);
     crossings_sort(scratch->items + base, scratch->count - base);
     for (int i = base; i < scratch->count; i++)
-        finish(shape, &l, &ray, (i - base) % 2 == 0, &scratch->items[i]);
+        finish(shape, &l, &ray, line, (i - base) % 2 == 0, &scratch->items[i]);
     return false;
 }
 

@@ -171,6 +171,12 @@ struct Line {
     double near, far;
 };
 
+/* Is what happens at t wanted? */
+static inline bool line_wants(const Line *line, double t)
+{
+    return t >= line->near && t <= line->far;
+}
+
 /* Move a t that is exact to a few of its own ulps to where it is early for sure. */
 static inline double earlier(double t)
 {

@@ -76,6 +76,7 @@ typedef struct SpanView {
     double s[4];                        /* how far along the line the centres are */
     double d[BERNSTEIN_DEGREE_MAX + 1]; /* D: of twice the degree */
     double discriminant;                /* of D, if the span is straight */
+    BernsteinCenter s_center, d_center; /* the same s and D, if it is not */
 } SpanView;
 
 static void view_span(const SweepData *data, const SweepSpan *span, const SweepLine *l, SpanView *v)
@@ -92,7 +93,10 @@ static void view_span(const SweepData *data, const SweepSpan *span, const SweepL
     bernstein_add_product(span->r, span->r, n, 1, v->d);
     bernstein_add_product(p, p, n, -1, v->d);
     bernstein_add_product(q, q, n, -1, v->d);
-    if (n == 1) {
+    if (n > 1) {
+        bernstein_center(v->s, n, &v->s_center);
+        bernstein_center(v->d, 2 * n, &v->d_center);
+    } else {
         double rp = span->r[0] * p[1] - span->r[1] * p[0];
         double rq = span->r[0] * q[1] - span->r[1] * q[0], pq = p[0] * q[1] - p[1] * q[0];
         v->discriminant = rp * rp + rq * rq - pq * pq;
@@ -104,11 +108,30 @@ typedef struct SweepEnd {
     double s, u;
 } SweepEnd;
 
+/* Return s and sqrt(D) at u; at the knots with all digits, as the spans beside have them. */
+static void ball_at(const SpanView *v, double u, double *s, double *half)
+{
+    double d, slope;
+    int n = v->degree;
+    if (u == 0 || u == 1) {
+        *s = v->s[u == 0 ? 0 : n];
+        d = v->d[u == 0 ? 0 : 2 * n];
+    } else if (n == 1) {
+        *s = bernstein_value(v->s, 1, u);
+        d = bernstein_value(v->d, 2, u);
+    } else {
+        *s = bernstein_center_at(&v->s_center, u, &slope);
+        d = bernstein_center_at(&v->d_center, u, &slope);
+    }
+    *half = sqrt(num_max(d, 0));
+}
+
 /* Return the end of the ball at u: way -1 the first, 1 the last. */
 static SweepEnd ball_end(const SpanView *v, double way, double u)
 {
-    double slope, d = bernstein_at(v->d, 2 * v->degree, u, &slope);
-    return (SweepEnd){bernstein_value(v->s, v->degree, u) + way * sqrt(num_max(d, 0)), u};
+    double s, half;
+    ball_at(v, u, &s, &half);
+    return (SweepEnd){s + way * half, u};
 }
 
 /* Take an end if it is further out. */
@@ -139,8 +162,8 @@ static SweepEnd straight_end(const SpanView *v, double way, double from, double 
 /* Return a number whose sign is that of the derivative of way s + sqrt(D). */
 static double end_slope(const SpanView *v, double way, double u)
 {
-    double slope, along, d = bernstein_at(v->d, 2 * v->degree, u, &slope);
-    bernstein_at(v->s, v->degree, u, &along);
+    double slope, along, d = bernstein_center_at(&v->d_center, u, &slope);
+    bernstein_center_at(&v->s_center, u, &along);
     return slope + 2 * way * along * sqrt(num_max(d, 0));
 }
 
@@ -174,21 +197,43 @@ static double find_turn(const SpanView *v, double way, double lo, double hi)
     return 0.5 * (lo + hi);
 }
 
-/* The end of a stretch, looked for from the best of some samples. */
-static SweepEnd sampled_end(const SpanView *v, double way, double from, double to, int samples)
+enum { SAMPLES = 6, MANY_SAMPLES = 96 };
+
+/* Balls spread over a stretch. */
+typedef struct Samples {
+    int count; /* less one */
+    double from, to, s[MANY_SAMPLES + 1], half[MANY_SAMPLES + 1];
+} Samples;
+
+static double sample_place(const Samples *all, int i)
 {
-    SweepEnd best = ball_end(v, way, from);
-    double step = (to - from) / samples;
+    return i == all->count ? all->to : all->from + (all->to - all->from) * i / all->count;
+}
+
+static void take_samples(const SpanView *v, double from, double to, int count, Samples *out)
+{
+    out->count = count;
+    out->from = from;
+    out->to = to;
+    for (int i = 0; i <= count; i++)
+        ball_at(v, sample_place(out, i), &out->s[i], &out->half[i]);
+}
+
+/* The end of a stretch, looked for around the best of some samples. */
+static SweepEnd sampled_end(const SpanView *v, double way, const Samples *all)
+{
     int at = 0;
-    for (int i = 1; i <= samples; i++) {
-        SweepEnd end = ball_end(v, way, i == samples ? to : from + i * step);
-        if (way * (end.s - best.s) > 0) {
-            best = end;
+    double most = -INFINITY;
+    for (int i = 0; i <= all->count; i++) {
+        double reach = way * all->s[i] + all->half[i];
+        if (reach > most) {
+            most = reach;
             at = i;
         }
     }
-    double lo = at > 0 ? from + (at - 1) * step : from;
-    double hi = at < samples - 1 ? from + (at + 1) * step : to;
+    SweepEnd best = {way * most, sample_place(all, at)};
+    double lo = sample_place(all, at > 0 ? at - 1 : 0);
+    double hi = sample_place(all, at < all->count ? at + 1 : all->count);
     take_end(&best, way, ball_end(v, way, find_turn(v, way, lo, hi)));
     return best;
 }
@@ -209,8 +254,9 @@ static bool goes_below(const double *b, int degree, double slack, int depth)
            goes_below(half[1], degree, slack, depth - 1);
 }
 
-/* Prove that no ball of the stretch reaches beyond an end: (s - s(u))^2 - D(u) is the power of that
- * point with respect to the ball at u, and nowhere negative. */
+/* Prove that no ball reaches beyond an end: (s - s(u))^2 - D(u) is the power of that point with
+ * respect to the ball at u, and nowhere negative.  Outside the stretch, where D is negative, it
+ * cannot be. */
 static bool is_proved(const SpanView *v, SweepEnd end, double from, double to)
 {
     int n = v->degree;
@@ -224,26 +270,49 @@ static bool is_proved(const SpanView *v, SweepEnd end, double from, double to)
     bernstein_add_product(off, off, n, 1, power);
     double slack = 0x1p-40 * size;
     for (int side = 0; side < 2; side++) {
-        double a = side ? end.u : from, b = side ? to : end.u;
-        if (!(a < b))
+        if (side ? end.u >= to : end.u <= from)
             continue;
-        bernstein_part(power, 2 * n, a, b, part);
+        bernstein_part(power, 2 * n, side ? end.u : 0, side ? 1 : end.u, part);
         if (goes_below(part, 2 * n, slack, 24))
             return false;
     }
     return true;
 }
 
-/* Return an end of the stretch [from, to]. */
-static SweepEnd stretch_end(const SpanView *v, double way, double from, double to)
+/* Find both ends of the stretch [from, to]. */
+static void stretch_ends(const SpanView *v, double from, double to, SweepEnd out[2])
 {
-    enum { SAMPLES = 6, MANY_SAMPLES = 96 };
-    if (v->degree == 1)
-        return straight_end(v, way, from, to);
-    SweepEnd end = sampled_end(v, way, from, to, SAMPLES);
-    if (is_proved(v, end, from, to))
-        return end;
-    return sampled_end(v, way, from, to, MANY_SAMPLES);
+    if (v->degree == 1) {
+        out[0] = straight_end(v, -1, from, to);
+        out[1] = straight_end(v, 1, from, to);
+        return;
+    }
+    Samples samples;
+    take_samples(v, from, to, SAMPLES, &samples);
+    out[0] = sampled_end(v, -1, &samples);
+    out[1] = sampled_end(v, 1, &samples);
+    if (is_proved(v, out[0], from, to) && is_proved(v, out[1], from, to))
+        return;
+    take_samples(v, from, to, MANY_SAMPLES, &samples);
+    out[0] = sampled_end(v, -1, &samples);
+    out[1] = sampled_end(v, 1, &samples);
+}
+
+static V3 center_at(const SweepData *data, const SweepSpan *span, double u)
+{
+    return v3(bernstein_value(span->c[0], data->degree, u),
+              bernstein_value(span->c[1], data->degree, u),
+              bernstein_value(span->c[2], data->degree, u));
+}
+
+/* Return where the line enters or leaves the ball at u, with all digits. */
+static double exact_end(const SweepData *data, const SweepSpan *span, const SweepLine *l,
+                        double way, double u)
+{
+    V3 c = v3_sub(center_at(data, span, u), l->f);
+    double p = v3_dot(c, l->p), q = v3_dot(c, l->q), off = sqrt(p * p + q * q);
+    double r = bernstein_value(span->r, data->degree, u);
+    return v3_dot(c, l->e) + way * sqrt(num_max(0, (r - off) * (r + off)));
 }
 
 /* Push the pieces of the line inside the balls of a span; t is s, child tells the order at one
@@ -267,13 +336,14 @@ static void push_span(const SweepData *data, uint32_t number, const SweepLine *l
         /* Between balls of positive and negative radius D is negative. */
         if (bernstein_value(span->r, v.degree, 0.5 * (from + to)) < 0)
             continue;
+        SweepEnd ends[2];
+        stretch_ends(&v, from, to, ends);
         for (int end = 0; end < 2; end++) {
-            SweepEnd place = stretch_end(&v, end ? 1 : -1, from, to);
-            Crossing c = {.t = place.s,
+            Crossing c = {.t = exact_end(data, span, l, end ? 1 : -1, ends[end].u),
                           .part = number,
                           .child = (uint32_t)end,
                           .change = end ? -1 : 1,
-                          .u = place.u};
+                          .u = ends[end].u};
             scratch_push(scratch, &c);
         }
     }
@@ -323,23 +393,20 @@ static void line_begin(SweepLine *l, const SweepData *data, const LocalRay *ray)
     l->inverse = v3(1 / l->e.x, 1 / l->e.y, 1 / l->e.z);
 }
 
-static V3 center_at(const SweepData *data, uint32_t number, double u)
-{
-    const SweepSpan *span = &data->spans[number];
-    return v3(bernstein_value(span->c[0], data->degree, u),
-              bernstein_value(span->c[1], data->degree, u),
-              bernstein_value(span->c[2], data->degree, u));
-}
-
 /* Finish a crossing that push_span has made. */
-static void finish(const Shape *shape, const SweepLine *l, const LocalRay *ray, Crossing *c)
+static void finish(const Shape *shape, const SweepLine *l, const LocalRay *ray, const Line *line,
+                   Crossing *c)
 {
     const SweepData *data = shape->u.sweep;
-    V3 n = v3_unit(v3_sub(v3_mad(l->f, c->t, l->e), center_at(data, c->part, c->u)));
-    double t = l->base + c->t / l->speed;
-    double off = v3_sum_abs(local_error(ray, t)) + PLACE_EPS * data->size;
+    double s = c->t, t = l->base + s / l->speed;
     c->t = t;
-    c->t_error = off / fabs(v3_dot(n, ray->d)) + 4 * EPS_DOUBLE * (fabs(l->base) + fabs(t));
+    c->t_error = 4 * EPS_DOUBLE * (fabs(l->base) + fabs(t));
+    if (line_wants(line, t)) {
+        V3 c0 = center_at(data, &data->spans[c->part], c->u);
+        V3 n = v3_unit(v3_sub(v3_mad(l->f, s, l->e), c0));
+        double off = v3_sum_abs(local_error(ray, t)) + PLACE_EPS * data->size;
+        c->t_error += off / fabs(v3_dot(n, ray->d));
+    }
     c->leaf = shape;
     c->leaf_change = c->change;
     c->is_visible = true;
@@ -361,7 +428,7 @@ static bool sweep_list(const Shape *shape, const Line *line, ShapeScratch *scrat
         depth += c.change;
         if (before > 0 && depth > 0)
             continue;
-        finish(shape, &l, &ray, &c);
+        finish(shape, &l, &ray, line, &c);
         scratch->items[written++] = c;
     }
     scratch->count = written;
@@ -373,7 +440,7 @@ static bool sweep_list(const Shape *shape, const Line *line, ShapeScratch *scrat
 static void sweep_point(const Shape *shape, const Crossing *crossing, V3 p, LocalPoint *out)
 {
     const SweepData *data = shape->u.sweep;
-    V3 c = center_at(data, crossing->part, crossing->u), n = v3_unit(v3_sub(p, c));
+    V3 c = center_at(data, &data->spans[crossing->part], crossing->u), n = v3_unit(v3_sub(p, c));
     double r = bernstein_value(data->spans[crossing->part].r, data->degree, crossing->u);
     out->ng = v3_len2(n) > 0 ? n : v3(0, 1, 0);
     out->p = v3_mad(c, r, out->ng);

@@ -110,6 +110,80 @@ static void test_joints(void **state)
     }
 }
 
+/* How far a ball of a span reaches beyond p, at u. */
+static double reach_at(int span, double u, V3 p)
+{
+    double at[3], slope;
+    for (int axis = 0; axis < 3; axis++)
+        at[axis] = bernstein_at(sweep.spans[span].c[axis], sweep.degree, u, &slope);
+    double r = bernstein_at(sweep.spans[span].r, sweep.degree, u, &slope);
+    return r > 0 ? r - v3_dist(p, v3(at[0], at[1], at[2])) : -INFINITY;
+}
+
+/* The furthest that any ball reaches beyond p: from samples, by golden sections. */
+static double most_reach(V3 p)
+{
+    double most = -INFINITY;
+    for (int i = 0; i < sweep.count; i++) {
+        int best = 0;
+        for (int k = 1; k <= STEPS; k++)
+            if (reach_at(i, (double)k / STEPS, p) > reach_at(i, (double)best / STEPS, p))
+                best = k;
+        double lo = fmax(0, best - 1) / STEPS, hi = fmin(STEPS, best + 1) / STEPS;
+        for (int k = 0; k < 60; k++) {
+            double a = hi - 0.618034 * (hi - lo), b = lo + 0.618034 * (hi - lo);
+            if (reach_at(i, a, p) > reach_at(i, b, p))
+                hi = b;
+            else
+                lo = a;
+        }
+        most = fmax(most, fmax(reach_at(i, lo, p), reach_at(i, hi, p)));
+        most = fmax(most, fmax(reach_at(i, 0, p), reach_at(i, 1, p)));
+    }
+    return most;
+}
+
+/* Points of crossings are on the surface to the error they state, from grazing lines too: rays that
+ * leave there must not be caught by the balls. */
+static void test_points(void **state)
+{
+    (void)state;
+    static const SplineKind kinds[3] = {SPLINE_CUBIC, SPLINE_B, SPLINE_LINEAR};
+    double worst = 0;
+    for (int kind = 0; kind < 3; kind++) {
+        Shape *shape = sweep_of(kinds[kind], bend, 5);
+        shape_finish(arena, shape);
+        Rng rng = rng_at(5, 2, (uint64_t)kind);
+        for (int i = 0; i < 3000; i++) {
+            V3 at = v3(4 * rng_double(&rng) - 1, 2 * rng_double(&rng) - .5, rng_double(&rng) - .5);
+            V3 d = random_dir(&rng);
+            Ray ray = {v3_mad(at, -9, d), d, -INFINITY, INFINITY};
+            CrossList list;
+            shape_crossings(shape, &ray, scratch, &list);
+            for (int k = 0; k < list.count; k++) {
+                ShapePoint point;
+                shape_point(&list.items[k], &ray, &point);
+                worst = fmax(worst, most_reach(point.p) / point.p_error);
+                if (k > 0)
+                    continue;
+                /* Lines that graze the surface there. */
+                V3 side = v3_unit(v3_cross(point.ng, random_dir(&rng)));
+                double lift = 0.01 * ldexp(1, -(int)(rng_double(&rng) * 50));
+                Ray low = {v3_mad(v3_mad(point.p, -lift, point.ng), -9, side), side, 0, INFINITY};
+                Crossing c;
+                bool is_met = shape_closest(shape, &low, scratch, &c);
+                if (is_met)
+                    shape_point(&c, &low, &point);
+                if (is_met)
+                    worst = fmax(worst, most_reach(point.p) / point.p_error);
+                break; /* the list is gone */
+            }
+        }
+    }
+    if (worst > 1)
+        fail_msg("a ball reaches %g times the stated error beyond a point", worst);
+}
+
 static void check_front(const Shape *shape, double x, double y, double z, V3 n)
 {
     Ray ray = {v3(x, y, -9), v3(0, 0, 1), 0, INFINITY};
@@ -139,10 +213,8 @@ static void test_probes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_linear),
-        cmocka_unit_test(test_curved),
-        cmocka_unit_test(test_joints),
-        cmocka_unit_test(test_probes),
+        cmocka_unit_test(test_linear), cmocka_unit_test(test_curved), cmocka_unit_test(test_joints),
+        cmocka_unit_test(test_points), cmocka_unit_test(test_probes),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
