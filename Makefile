@@ -22,7 +22,7 @@ CSRC     := $(foreach f,$(FLOORS),$(wildcard src/$(f)/*.c))
 CXXSRC   := $(wildcard src/image/*.cpp)
 LIBSRC   := $(filter-out src/cli/main.c,$(CSRC))
 LIBOBJ   := $(LIBSRC:%.c=$(B)/%.o) $(CXXSRC:%.cpp=$(B)/%.o)
-QUICK    := csg_showpiece macros_loops mesh_vase metal_ring
+QUICK    := csg_showpiece macros_loops mesh_vase
 UNIT     := $(patsubst %.c,$(B)/%,$(wildcard tests/unit/*_test.c tests/physics/*_test.c \
             tests/hard/*_test.c tests/fault/*_test.c))
 PHYSICS  := $(filter $(B)/tests/physics/%,$(UNIT))
@@ -113,7 +113,7 @@ bench-accuracy: deps ## estimated errors against true ones, for every scene (two
 	$(Q)$(MAKE) --no-print-directory $(B)/tests/bench/accuracy_bench
 	$(Q)mkdir -p $(B)/truth
 	$(Q)$(B)/tests/bench/accuracy_bench -k $(B)/truth scenes/*.pms
-	$(Q)$(B)/tests/bench/accuracy_bench -k $(B)/truth -r 100 -w 80 -e 2 -n 8 $(QUICK:%=scenes/%.pms)
+	$(Q)$(B)/tests/bench/accuracy_bench -k $(B)/truth -r 100 -w 80 -e 2 -n 10 $(QUICK:%=scenes/%.pms)
 
 fuzz: deps ## fuzz the scene reader for a minute (needs clang with libFuzzer)
 	$(Q)tests/fuzz/run.sh

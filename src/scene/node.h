@@ -76,6 +76,14 @@ bool node_transform(Arena *arena, Node *node, const Xform *xform);
 /* Swap inside and outside of a node, in place. */
 void node_invert(Node *node);
 
+/* Return the shape of a node that is no light, made of those of its leaves, which it takes: a node
+ * has one.  NULL when memory is out. */
+Shape *node_shape(Arena *arena, const Node *node);
+
+/* Attach the clips of a node to its shape.  Clips show no surface; theirs is that of what they
+ * clip, so that no leaf is without one.  Returns false when memory is out. */
+bool node_add_clips(Arena *arena, const Node *node, Shape *shape, uint32_t surface);
+
 /* Return true if every shape of the node has an inside; lights do not count. */
 bool node_is_solid(const Node *node);
 

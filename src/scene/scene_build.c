@@ -227,53 +227,6 @@ static void add_light(Finisher *f, const Node *node)
     }
 }
 
-static void set_surface(Shape *shape, uint32_t surface)
-{
-    shape->surface = surface;
-    for (int i = 0; i < shape->child_count; i++)
-        set_surface(shape->children[i], surface);
-}
-
-static Shape *geometry_of(Finisher *f, const Node *node);
-
-/* Attach the clips of a node to its shape.  Clips show no surface; theirs is that of what they
- * clip, so that no leaf is without one. */
-static bool add_clips(Finisher *f, const Node *node, Shape *shape, uint32_t surface)
-{
-    if (node->clip_count == 0)
-        return true;
-    shape->clips = ARENA_ARRAY(f->scene->arena, Shape *, (size_t)node->clip_count);
-    if (!shape->clips)
-        return false;
-    for (int i = 0; i < node->clip_count; i++) {
-        Shape *clip = geometry_of(f, node->clips[i]);
-        if (!clip)
-            return false;
-        set_surface(clip, surface);
-        shape->clips[shape->clip_count++] = clip;
-    }
-    return true;
-}
-
-/* Return the shape of a node without looks (for clips), or NULL when memory is out. */
-static Shape *geometry_of(Finisher *f, const Node *node)
-{
-    Shape *shape = node->shape;
-    if (node->kind == NODE_CSG) {
-        size_t count = (size_t)node->child_count;
-        Shape **children = ARENA_ARRAY(f->scene->arena, Shape *, count);
-        int used = 0;
-        for (int i = 0; children && i < node->child_count; i++)
-            if (node->children[i]->kind != NODE_LIGHT &&
-                !(children[used++] = geometry_of(f, node->children[i])))
-                return NULL;
-        shape = children ? shape_csg(f->scene->arena, node->csg, children, used) : NULL;
-        if (shape && node->is_inverted)
-            shape_invert(shape);
-    }
-    return shape && add_clips(f, node, shape, 0) ? shape : NULL;
-}
-
 static bool fail_memory(Finisher *f)
 {
     f->has_failed = true;
@@ -329,7 +282,7 @@ static bool build_shape(Finisher *f, const Node *node, const Looks *parent, Shap
         *out = node->shape;
         (*out)->surface = surface;
     }
-    if (!f->is_counting && !add_clips(f, node, *out, surface))
+    if (!f->is_counting && !node_add_clips(f->scene->arena, node, *out, surface))
         return fail_memory(f);
     return true;
 }

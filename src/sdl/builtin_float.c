@@ -419,6 +419,8 @@ void parse_number_word(Parser *p, Terms *out)
     } else {
         if (is_vector_word(word.kind))
             parse_vector_call(p, word.kind, out);
+        else if (is_object_word(word.kind))
+            parse_object_call(p, word.kind, out);
         else
             out->n[0] = float_call(p, word);
         parse_expect(p, TOKEN_RPAREN, "the arguments");

@@ -105,6 +105,14 @@ typedef struct Terms {
     double n[5];
 } Terms;
 
+/* The shape of a declared object. */
+typedef struct AskedShape {
+    const Node *node;
+    const Shape *shape;
+} AskedShape;
+
+enum { ASKED_SHAPES = 16 };
+
 struct Parser {
     jmp_buf failed;
     Status status;
@@ -138,6 +146,10 @@ struct Parser {
     size_t argument_count, argument_capacity;
     Value taken[TAKEN_COUNT];
     unsigned taken_count;
+
+    AskedShape asked[ASKED_SHAPES]; /* of objects asked about last; node NULL: none */
+    unsigned asked_count;
+    ShapeScratch *shape_scratch;    /* made when needed; freed by sdl_load */
 
     double version;
     bool has_version, is_utf8;
@@ -279,6 +291,9 @@ bool is_number_word(TokenKind kind);
 bool is_string_word(TokenKind kind);
 void parse_number_word(Parser *p, Terms *out);
 void parse_vector_call(Parser *p, TokenKind word, Terms *out);
+/* Return true for the functions that ask an object, and work out a call of one. */
+bool is_object_word(TokenKind word);
+void parse_object_call(Parser *p, TokenKind word, Terms *out);
 double random_next(Parser *p, double stream, Span span);
 double random_seed(Parser *p, double number);
 

@@ -171,6 +171,8 @@ static Status load(Diag *diag, const Request *request, const SdlOptions *options
     Arena *arena = arena_new();
     Parser *p = scene && arena ? parser_new(diag, options, scene, arena) : NULL;
     Status status = p ? parse_all(p, request) : diag_no_memory(diag, "the scene");
+    if (p)
+        shape_scratch_free(p->shape_scratch);
     arena_free(arena);
     if (status == OK)
         *out = scene;
