@@ -76,9 +76,7 @@ static void builder_add_unit(Parser *p, Builder *b, unsigned unit)
     b->length += unit_encode(unit, b->bytes + b->length);
 }
 
-/* Decode one UTF-8 character of at most `length` bytes; returns the bytes used.  What is no
- * UTF-8, or beyond 16 bits, becomes the unknown unit. */
-static size_t unit_decode(const char *text, size_t length, unsigned *unit)
+size_t unit_decode(const char *text, size_t length, unsigned *unit)
 {
     unsigned char first = (unsigned char)text[0];
     size_t count = first < 0x80 ? 1 : first >= 0xF0 && first < 0xF8 ? 4 : first >= 0xE0 ? 3 : 2;

@@ -305,6 +305,9 @@ typedef struct Text {
 bool is_text_start(Parser *p);
 Text parse_text(Parser *p);
 int text_compare(Text a, Text b); /* difference of the first codes that differ */
+/* Decode one UTF-8 character of at most `length` bytes; returns the bytes used.  What is no
+ * UTF-8, or beyond 16 bits, becomes the unknown unit. */
+size_t unit_decode(const char *text, size_t length, unsigned *unit);
 size_t text_units(Text text);
 int text_first_unit(Text text);
 

@@ -74,6 +74,7 @@ Node *read_disc(Parser *p);
 Node *read_triangle(Parser *p);
 Node *read_smooth_triangle(Parser *p);
 Node *read_polygon(Parser *p);
+Node *read_text(Parser *p);
 Node *read_bicubic_patch(Parser *p);
 Node *read_prism(Parser *p);
 Node *read_lathe(Parser *p);

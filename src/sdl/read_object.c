@@ -29,6 +29,7 @@ static const ObjectRule *object_rule(TokenKind word)
         {KW_TRIANGLE, read_triangle},
         {KW_SMOOTH_TRIANGLE, read_smooth_triangle},
         {KW_POLYGON, read_polygon},
+        {KW_TEXT, read_text},
         {KW_BICUBIC_PATCH, read_bicubic_patch},
         {KW_PRISM, read_prism},
         {KW_LATHE, read_lathe},
