@@ -64,6 +64,7 @@ Node *read_box(Parser *p);
 Node *read_cylinder(Parser *p);
 Node *read_cone(Parser *p);
 Node *read_torus(Parser *p);
+Node *read_blob(Parser *p);
 Node *read_quadric(Parser *p);
 Node *read_cubic(Parser *p);
 Node *read_quartic(Parser *p);
@@ -99,6 +100,9 @@ double read_image_file(Parser *p, Bitmap *out);
 
 /* Modifiers up to and including the closing brace of the object. */
 void read_object_modifiers(Parser *p, Node *node, TokenKind object_word);
+
+/* Read a modifier of how the object looks; returns false if none comes next. */
+bool read_look(Parser *p, Node *node);
 
 /* The items of clipped_by and bounded_by. */
 void read_clipped_by(Parser *p, Node *node);

@@ -21,6 +21,7 @@ static const ObjectRule *object_rule(TokenKind word)
         {KW_TORUS, read_torus},
         {KW_PLANE, read_plane},
         {KW_DISC, read_disc},
+        {KW_BLOB, read_blob},
         {KW_QUADRIC, read_quadric},
         {KW_CUBIC, read_cubic},
         {KW_QUARTIC, read_quartic},
@@ -135,8 +136,7 @@ static void read_interior_texture(Parser *p, Node *node)
     node->inner_texture = read_layers(p, node->inner_texture, read_texture(p));
 }
 
-/* Read a modifier of how the object looks; returns false if none comes next. */
-static bool read_look(Parser *p, Node *node)
+bool read_look(Parser *p, Node *node)
 {
     switch (parse_peek(p)->kind) {
     case KW_TEXTURE:
@@ -254,7 +254,7 @@ static bool is_sturm_shape(TokenKind word)
 {
     return word == KW_TORUS || word == KW_PRISM || word == KW_LATHE || word == KW_SOR ||
            word == KW_OVUS || word == KW_CUBIC || word == KW_QUARTIC || word == KW_POLY ||
-           word == KW_POLYNOMIAL || word == KW_OBJECT;
+           word == KW_POLYNOMIAL || word == KW_BLOB || word == KW_OBJECT;
 }
 
 /* Words that choose a method of POV-Ray's and change nothing in what is seen here. */
@@ -267,9 +267,9 @@ static bool read_method(Parser *p, TokenKind object_word)
         fits = is_sturm_shape(object_word);
         where = "sturm fits shapes made of polynomials only";
     } else if (kind == KW_HIERARCHY) {
-        fits = object_word == KW_MESH || object_word == KW_MESH2 || object_word == KW_OBJECT ||
-               object_word == KW_HEIGHT_FIELD;
-        where = "hierarchy fits a mesh or height_field only";
+        fits = object_word == KW_MESH || object_word == KW_MESH2 || object_word == KW_BLOB ||
+               object_word == KW_HEIGHT_FIELD || object_word == KW_OBJECT;
+        where = "hierarchy fits a mesh, blob or height_field only";
     } else if (kind == KW_SPLIT_UNION) {
         fits = object_word == KW_UNION || object_word == KW_MERGE || object_word == KW_COMPOSITE ||
                object_word == KW_OBJECT;

@@ -223,6 +223,7 @@ void shape_scratch_free(ShapeScratch *scratch)
     mem_free(scratch->items);
     mem_free(scratch->states);
     mem_free(scratch->triangles);
+    mem_free(scratch->room);
     mem_free(scratch);
 }
 
@@ -238,4 +239,17 @@ void scratch_push(ShapeScratch *scratch, const Crossing *crossing)
         scratch->items = items;
     }
     scratch->items[scratch->count++] = *crossing;
+}
+
+void *scratch_room(ShapeScratch *scratch, size_t size)
+{
+    while (scratch->room_capacity < size) {
+        void *room = scratch->room;
+        if (mem_grow(&room, scratch->room_capacity, &scratch->room_capacity, 1)) {
+            scratch->is_overflown = true;
+            return NULL;
+        }
+        scratch->room = room;
+    }
+    return scratch->room;
 }

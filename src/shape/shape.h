@@ -75,6 +75,7 @@ typedef struct OvusParams {
     double arc, height; /* radius of the arc between them, and height of its centre */
     double beyond;      /* how far that is beyond the axis */
 } OvusParams;
+
 typedef struct QuadricParams {
     V3 square;       /* of x^2, y^2, z^2 */
     V3 mixed;        /* of xy, xz, yz */
@@ -86,6 +87,18 @@ typedef struct QuadricParams {
 } QuadricParams;
 
 typedef struct PolyData PolyData; /* shape/poly.c */
+
+/* A component of a blob.  In its own space the field is `strength` at the origin, or from there to
+ * (0, 0, length), and vanishes at the distance 1 from that. */
+typedef struct BlobComponent {
+    Xform place;           /* from there to the blob's space */
+    double length;         /* 0: a ball */
+    double strength;
+    uint32_t texture;      /* into the surface's list, or MESH_NO_TEXTURE: the blob's */
+    double spread, offset; /* of place.from: set by shape_blob */
+} BlobComponent;
+
+typedef struct BlobData BlobData; /* shape/blob.c */
 
 typedef struct DiscParams {
     double hole, radius; /* in the plane z = 0, inside is z < 0 */
@@ -127,6 +140,7 @@ struct Shape {
         TorusParams torus;
         QuadricParams quadric;
         const PolyData *poly;
+        const BlobData *blob; /* shared by copies */
         DiscParams disc;
         OvusParams ovus;
         TriangleParams triangle;
@@ -199,6 +213,9 @@ Shape *shape_cone(Arena *arena, V3 bottom, double bottom_radius, V3 top, double 
                   bool is_open);
 Shape *shape_plane(Arena *arena, V3 normal, double distance);
 Shape *shape_torus(Arena *arena, double major, double minor);
+/* count > 0.  has_textures: some component has one of its own. */
+Shape *shape_blob(Arena *arena, double threshold, const BlobComponent *components, uint32_t count,
+                  bool has_textures);
 /* square . (x^2, y^2, z^2) + mixed . (xy, xz, yz) + linear . (x, y, z) + constant = 0 */
 Shape *shape_quadric(Arena *arena, V3 square, V3 mixed, V3 linear, double constant);
 /* A polynomial of degree 2 to ROOTS_DEGREE_MAX; c: poly_term_count numbers, ordered by falling
@@ -312,6 +329,18 @@ static inline bool shape_point_is_inside(const ShapePoint *point, V3 n)
 
 /* Return the language's uv of the point p on `part` of `leaf`; u and v are the crossing's. */
 V2 shape_uv(const Shape *leaf, uint32_t part, double u, double v, V3 p);
+
+/* Which textures of a surface's list a leaf blends at a point. */
+enum { SHAPE_BLEND_MAX = 12 };
+typedef struct ShapeBlend {
+    int count;
+    uint32_t texture[SHAPE_BLEND_MAX]; /* or MESH_NO_TEXTURE: the surface's own */
+    double weight[SHAPE_BLEND_MAX];    /* add up to 1 */
+} ShapeBlend;
+
+/* Find the blend of a leaf at a point of its surface; false if it has none.  Components of blobs
+ * beyond the SHAPE_BLEND_MAX strongest textures are left out. */
+bool shape_blend(const Shape *leaf, V3 p, ShapeBlend *out);
 
 /* Return a box around all that can be seen of the shape; sides may be infinite (see
  * bound_is_finite). */

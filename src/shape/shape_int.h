@@ -220,7 +220,13 @@ struct ShapeScratch {
     size_t state_capacity, state_count;
     TriHit *triangles;
     size_t triangle_capacity;
+    void *room; /* for one leaf at a time */
+    size_t room_capacity;
 };
+
+/* Return the scratch's room for a leaf, grown to `size` bytes with what was in it kept; NULL, and
+ * the scratch says so, when memory is out. */
+void *scratch_room(ShapeScratch *scratch, size_t size);
 
 /* Push a crossing; when the stack is full or memory is out it is dropped and the scratch says
  * so. */

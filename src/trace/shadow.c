@@ -197,7 +197,7 @@ static Rgb crossing_filter(const ShadowQuery *query, const Filter *filter, const
     shape_point(crossing, ray, &point);
     TextureChoice choice;
     texture_choose(surface, crossing->leaf, crossing->part, crossing->u, crossing->v,
-                   v3_dot(point.ng, ray->d) > 0, &choice);
+                   point.p, v3_dot(point.ng, ray->d) > 0, &choice);
     Rgb sum = RGB_BLACK;
     for (int i = 0; i < choice.count; i++)
         sum =

@@ -206,8 +206,8 @@ static void sample_ties(Sampling *s)
         TextureChoice choice;
         bool is_inside = set_normals(s, &hit->ties[i].point);
         s->is_interface_in = has_fresnel(s->out);
-        texture_choose(surface, crossing->leaf, crossing->part, crossing->u, crossing->v, is_inside,
-                       &choice);
+        texture_choose(surface, crossing->leaf, crossing->part, crossing->u, crossing->v,
+                       hit->ties[i].point.p, is_inside, &choice);
         sample_surface(s, &choice);
     }
     set_normals(s, &hit->point);
@@ -327,7 +327,8 @@ void surface_sample(TraceThread *thread, const Ray *ray, const Hit *hit, const I
     out->is_total_reflection = false;
 
     TextureChoice choice;
-    texture_choose(hit->surface, hit->leaf, hit->part, hit->u, hit->v, is_inside, &choice);
+    texture_choose(hit->surface, hit->leaf, hit->part, hit->u, hit->v, hit->point.p, is_inside,
+                   &choice);
     sample_surface(&s, &choice);
     if (hit->tie_count > 0)
         sample_ties(&s);

@@ -18,14 +18,27 @@ static const Texture *mesh_texture(const Surface *surface, uint32_t number)
     return number == MESH_NO_TEXTURE ? surface->texture : surface->mesh_textures[number];
 }
 
+/* The components of a blob that have a field at p. */
+static bool choose_blend(const Surface *surface, const Shape *leaf, V3 p, TextureChoice *out)
+{
+    ShapeBlend blend;
+    if (!shape_blend(leaf, p, &blend))
+        return false;
+    for (int i = 0; i < blend.count; i++)
+        add(out, mesh_texture(surface, blend.texture[i]), blend.weight[i]);
+    return true;
+}
+
 void texture_choose(const Surface *surface, const Shape *leaf, uint32_t part, double u, double v,
-                    bool is_inside, TextureChoice *out)
+                    V3 p, bool is_inside, TextureChoice *out)
 {
     out->count = 0;
     if (is_inside && surface->inner_texture) {
         add(out, surface->inner_texture, 1);
         return;
     }
+    if (surface->mesh_textures && choose_blend(surface, leaf, p, out))
+        return;
     if (!surface->mesh_textures || leaf->kind != SHAPE_MESH || !leaf->u.mesh->textures) {
         out->texture[0] = surface->texture;
         out->weight[0] = 1;

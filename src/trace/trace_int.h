@@ -69,19 +69,21 @@ static inline bool object_is_missed(const TracedObject *object, const Ray *ray)
     return far2 - along * along > limit || (along < 0 && far2 > limit);
 }
 
-/* Which texture a surface shows at a point; up to three blended (corners of a mesh triangle). */
+/* Which texture a surface shows at a point; several are blended between the corners of a mesh
+ * triangle and the components of a blob. */
 typedef struct TextureChoice {
-    const Texture *texture[3];
-    float weight[3]; /* add up to 1 */
+    const Texture *texture[SHAPE_BLEND_MAX];
+    float weight[SHAPE_BLEND_MAX]; /* add up to 1 */
     int count;
 } TextureChoice;
 
 /* Choose the texture of a surface point.
  *
  * part, u, v  of the crossing or hit.
+ * p           the point in the world.
  * is_inside   met from the inside. */
 void texture_choose(const Surface *surface, const Shape *leaf, uint32_t part, double u, double v,
-                    bool is_inside, TextureChoice *out);
+                    V3 p, bool is_inside, TextureChoice *out);
 
 /* The factor of metallic highlights and reflection at a cosine: from 1 at grazing angles to the
  * surface's colour. */

@@ -20,7 +20,7 @@ printf '#include "b.inc"\n' >"$T/a.inc"; printf '#include "a.inc"\n' >"$T/b.inc"
 bad include-cycle "includes itself" '#include "a.inc"'
 bad wrong-type "wants|wanted" 'sphere { "abc", 1 }'
 bad unknown-word "did you mean .?sphere" 'shpere { 0, 1 }'
-bad not-yet "has no .blob. yet" 'blob { threshold 1 sphere { 0, 1, 1 } }'
+bad not-yet "has no .light_group. yet" 'light_group { sphere { 0, 1 } }'
 bad nan-transform "finite" 'sphere { 0, 1 translate <1e308*10*0, 0, 0> }'
 bad singular-matrix "singular" 'sphere { 0, 1 matrix <1,0,0, 1,0,0, 0,0,1, 0,0,0> }'
 bad zero-plane "normal of a plane is 0" 'plane { <0,0,0>, 1 }'
