@@ -1,4 +1,5 @@
-/* Surfaces given by the coefficients of a polynomial.  SPDX-License-Identifier: Apache-2.0 */
+/* Surfaces given by an equation: coefficients of a polynomial, or exponents.
+ * SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/read_int.h"
 
 #include "math/roots.h"
@@ -13,6 +14,24 @@ Node *read_quadric(Parser *p)
     parse_comma(p);
     double constant = read_finite(p, "the constant of a quadric", NULL);
     return read_leaf(p, shape_quadric(parse_arena(p), square, mixed, linear, constant));
+}
+
+/* Exponents that povray takes without a word, and what is nearest to them. */
+#define EXPONENT_MIN 1e-6
+#define EXPONENT_MAX 100
+
+Node *read_superellipsoid(Parser *p)
+{
+    Span first = parse_peek(p)->span;
+    V2 v = parse_v2(p);
+    Span span = span_join(first, parse_last_span(p));
+    double e = num_min(num_max(v.u, EXPONENT_MIN), EXPONENT_MAX);
+    double n = num_min(num_max(v.v, EXPONENT_MIN), EXPONENT_MAX);
+    if (e != v.u || n != v.v)
+        parse_warn(p, WARN_GEOMETRY, span,
+                   "the exponents of a superellipsoid go from %g to %g: %g and %g are used",
+                   EXPONENT_MIN, (double)EXPONENT_MAX, e, n);
+    return read_leaf(p, shape_superellipsoid(parse_arena(p), e, n));
 }
 
 /* Make the leaf; a polynomial that is 0 or constant has no surface. */

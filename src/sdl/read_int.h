@@ -65,6 +65,7 @@ Node *read_cylinder(Parser *p);
 Node *read_cone(Parser *p);
 Node *read_torus(Parser *p);
 Node *read_blob(Parser *p);
+Node *read_superellipsoid(Parser *p);
 Node *read_quadric(Parser *p);
 Node *read_cubic(Parser *p);
 Node *read_quartic(Parser *p);

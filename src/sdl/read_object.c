@@ -22,6 +22,7 @@ static const ObjectRule *object_rule(TokenKind word)
         {KW_PLANE, read_plane},
         {KW_DISC, read_disc},
         {KW_BLOB, read_blob},
+        {KW_SUPERELLIPSOID, read_superellipsoid},
         {KW_QUADRIC, read_quadric},
         {KW_CUBIC, read_cubic},
         {KW_QUARTIC, read_quartic},

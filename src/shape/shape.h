@@ -86,6 +86,10 @@ typedef struct QuadricParams {
     double doubt;
 } QuadricParams;
 
+typedef struct SuperParams {
+    double p, q; /* of x and y, and of both and z: (|x|^p + |y|^p)^(q/p) + |z|^q = 1 */
+} SuperParams;
+
 typedef struct PolyData PolyData; /* shape/poly.c */
 
 /* A component of a blob.  In its own space the field is `strength` at the origin, or from there to
@@ -139,6 +143,7 @@ struct Shape {
         ConeParams cone;
         TorusParams torus;
         QuadricParams quadric;
+        SuperParams super;
         const PolyData *poly;
         const BlobData *blob; /* shared by copies */
         DiscParams disc;
@@ -213,6 +218,8 @@ Shape *shape_cone(Arena *arena, V3 bottom, double bottom_radius, V3 top, double 
                   bool is_open);
 Shape *shape_plane(Arena *arena, V3 normal, double distance);
 Shape *shape_torus(Arena *arena, double major, double minor);
+/* e, n > 0: the language's. */
+Shape *shape_superellipsoid(Arena *arena, double e, double n);
 /* count > 0.  has_textures: some component has one of its own. */
 Shape *shape_blob(Arena *arena, double threshold, const BlobComponent *components, uint32_t count,
                   bool has_textures);

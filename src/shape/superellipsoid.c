@@ -1,0 +1,396 @@
+/* Superellipsoids: the points that are at the distance 1 from the origin, as measured by
+ * N = ((|x|^p + |y|^p)^(q/p) + |z|^q)^(1/q) with p = 2/e and q = 2/n.
+ *
+ * N grows in proportion, so that p / N(p) is on the surface, exactly.  Where p and q are at least 1
+ * it is convex along a line: Newton's method from outside never passes the surface.  Otherwise the
+ * line is cut at the planes between octants, where N has cusps, and halved until bounds on
+ * N, or on its slope, tell what happens.  SPDX-License-Identifier: Apache-2.0 */
+#include "shape/shape_int.h"
+
+/* Bound on the relative rounding of N, for exponents of 1; small p and q raise it. */
+#define NORM_EPS (64 * EPS_DOUBLE)
+
+/* The box that is searched reaches as much beyond the surface, so that its sides are outside. */
+#define BOX_SLACK 0x1p-40
+
+enum { DEPTH_MAX = 44 };
+
+Shape *shape_superellipsoid(Arena *arena, double e, double n)
+{
+    Shape *shape = leaf_new(arena, SHAPE_SUPERELLIPSOID);
+    if (!shape)
+        return NULL;
+    shape->u.super = (SuperParams){2 / e, 2 / n};
+    leaf_place(shape, &XFORM_IDENTITY);
+    return shape;
+}
+
+/* --- the norm ------------------------------------------------------------------------------ */
+
+/* (a^p + b^p)^(1/p) for a, b >= 0. */
+static double norm2(double a, double b, double p)
+{
+    double most = num_max(a, b), least = num_min(a, b);
+    if (!(least > 0))
+        return most;
+    double share = exp(p * log(least / most));
+    return share < 0x1p-60 ? most : most * exp(log1p(share) / p);
+}
+
+/* (a / norm2(a, b, p)): from 0 to 1. */
+static double part2(double a, double b, double p)
+{
+    if (!(a > 0))
+        return 0;
+    if (b <= a)
+        return exp(-log1p(b > 0 ? exp(p * log(b / a)) : 0) / p);
+    double share = exp(p * log(a / b));
+    return a / b * exp(-log1p(share) / p);
+}
+
+static double norm_at(const SuperParams *s, V3 p)
+{
+    return norm2(norm2(fabs(p.x), fabs(p.y), s->p), fabs(p.z), s->q);
+}
+
+/* x^(p - 1) for x from 0 to 1. */
+static double power_less(double x, double p)
+{
+    return p == 1 ? 1 : pow(x, p - 1);
+}
+
+/* The gradient; infinite across the cusps between octants. */
+static V3 gradient_at(const SuperParams *s, V3 p)
+{
+    double x = fabs(p.x), y = fabs(p.y), z = fabs(p.z), a = norm2(x, y, s->p);
+    double flat = power_less(part2(a, z, s->q), s->q);
+    return v3(copysign(power_less(part2(x, y, s->p), s->p) * flat, p.x),
+              copysign(power_less(part2(y, x, s->p), s->p) * flat, p.y),
+              copysign(power_less(part2(z, a, s->q), s->q), p.z));
+}
+
+static double norm_error(const SuperParams *s)
+{
+    return NORM_EPS * (1 + 1 / s->p + 1 / s->q);
+}
+
+/* --- along a line -------------------------------------------------------------------------- */
+
+typedef struct SuperLine {
+    const SuperParams *s;
+    V3 o, d;  /* about t = base of the ray */
+    V3 error; /* of o */
+    double base;
+    double lo, hi; /* within the box, and where it is searched */
+    bool is_convex;
+} SuperLine;
+
+/* Clip to the box; false when it is missed. */
+static bool cut_to_box(SuperLine *l)
+{
+    const double o[3] = {l->o.x, l->o.y, l->o.z}, d[3] = {l->d.x, l->d.y, l->d.z};
+    double side = 1 + BOX_SLACK;
+    for (int i = 0; i < 3; i++) {
+        if (d[i] == 0) {
+            if (fabs(o[i]) > side)
+                return false;
+            continue;
+        }
+        double a = (-side - o[i]) / d[i], b = (side - o[i]) / d[i];
+        l->lo = num_max(l->lo, num_min(a, b));
+        l->hi = num_min(l->hi, num_max(a, b));
+    }
+    return l->lo < l->hi;
+}
+
+static bool line_init(SuperLine *l, const Shape *shape, const Ray *ray, double near, double far)
+{
+    LocalRay local;
+    local_ray(shape, ray, &local);
+    l->s = &shape->u.super;
+    l->is_convex = l->s->p >= 1 && l->s->q >= 1;
+    l->base = -v3_dot(local.o, local.d) / v3_len2(local.d);
+    l->o = v3_mad(local.o, l->base, local.d);
+    l->d = local.d;
+    l->error = local_error(&local, l->base);
+    l->lo = near - l->base;
+    l->hi = far - l->base;
+    return cut_to_box(l);
+}
+
+static V3 line_at(const SuperLine *l, double t)
+{
+    return v3_mad(l->o, t, l->d);
+}
+
+static double height_at(const SuperLine *l, double t)
+{
+    return norm_at(l->s, line_at(l, t)) - 1;
+}
+
+static LeafHit make_hit(const SuperLine *l, double t, int change)
+{
+    V3 g = gradient_at(l->s, line_at(l, t));
+    double doubt = 2 * norm_error(l->s) + v3_dot(v3_abs(g), l->error), slope = v3_dot(g, l->d);
+    double error = doubt / fabs(slope), at = l->base + t, most = v3_len(l->d);
+    /* Across a cusp both are infinite: the place is as certain as the point. */
+    if (!(error * most < 1))
+        error = v3_sum_abs(l->error) / most + sqrt(doubt < 1 ? doubt : EPS_DOUBLE) / most;
+    return (LeafHit){at, error + 4 * EPS_DOUBLE * (fabs(l->base) + fabs(t)), 0, (int8_t)change,
+                     true};
+}
+
+/* --- convex ones --------------------------------------------------------------------------- */
+
+/* Go from a place outside the surface to it; way: 1 forwards, -1 back.  Newton's method stays
+ * outside; false when it is passed by. */
+static bool approach(const SuperLine *l, double from, int way, double *out)
+{
+    double t = from, certain = norm_error(l->s);
+    for (int i = 0; i < 200; i++) {
+        V3 p = line_at(l, t);
+        double f = norm_at(l->s, p) - 1, slope = v3_dot(gradient_at(l->s, p), l->d);
+        if (f <= certain) {
+            *out = t;
+            return true;
+        }
+        double next = t - f / slope;
+        if (!(slope * way < 0) || next < l->lo || next > l->hi)
+            return false;
+        if (next == t) {
+            *out = t;
+            return true;
+        }
+        t = next;
+    }
+    return false;
+}
+
+/* Find the two crossings of a convex one on [lo, hi]; ends that are inside have none. */
+static int convex_hits(const SuperLine *l, bool *is_inside_before, LeafHit out[2])
+{
+    double a, b;
+    bool is_in = height_at(l, l->lo) < 0, is_out = height_at(l, l->hi) < 0;
+    int count = 0;
+    *is_inside_before = is_in;
+    bool has_entry = !is_in && approach(l, l->lo, 1, &a);
+    if (!is_in && !has_entry)
+        return 0;
+    bool has_exit = !is_out && approach(l, l->hi, -1, &b);
+    if (has_entry && has_exit && !(a < b))
+        return 0;
+    if (has_entry)
+        out[count++] = make_hit(l, a, 1);
+    if (has_exit)
+        out[count++] = make_hit(l, b, -1);
+    return count;
+}
+
+/* --- the others ---------------------------------------------------------------------------- */
+
+/* Magnitudes of x, y, z on a part of the line within an octant. */
+typedef struct Corner {
+    V3 lo, hi;
+} Corner;
+
+static Corner corner_of(const SuperLine *l, double a, double b)
+{
+    V3 p = v3_abs(line_at(l, a)), q = v3_abs(line_at(l, b));
+    return (Corner){v3_min(p, q), v3_max(p, q)};
+}
+
+/* The least and the largest of x^(p - 1) for x in [lo, hi]. */
+static void power_range(double lo, double hi, double p, double out[2])
+{
+    out[0] = power_less(p >= 1 ? lo : hi, p);
+    out[1] = power_less(p >= 1 ? hi : lo, p);
+}
+
+static void add_slope(const double range[2], double speed, double *least, double *most)
+{
+    if (speed == 0)
+        return;
+    *least += (speed > 0 ? range[0] : range[1]) * speed;
+    *most += (speed > 0 ? range[1] : range[0]) * speed;
+}
+
+/* Is N monotone within an octant between two t? */
+static bool is_monotone(const SuperLine *l, const Corner *c, double middle)
+{
+    const SuperParams *s = l->s;
+    V3 p = line_at(l, middle);
+    V3 speed = v3(copysign(1, p.x) * l->d.x, copysign(1, p.y) * l->d.y, copysign(1, p.z) * l->d.z);
+    double a_lo = norm2(c->lo.x, c->lo.y, s->p), a_hi = norm2(c->hi.x, c->hi.y, s->p);
+    double flat[2], x[2], y[2], z[2], least = 0, most = 0;
+    power_range(part2(a_lo, c->hi.z, s->q), part2(a_hi, c->lo.z, s->q), s->q, flat);
+    power_range(part2(c->lo.x, c->hi.y, s->p), part2(c->hi.x, c->lo.y, s->p), s->p, x);
+    power_range(part2(c->lo.y, c->hi.x, s->p), part2(c->hi.y, c->lo.x, s->p), s->p, y);
+    power_range(part2(c->lo.z, a_hi, s->q), part2(c->hi.z, a_lo, s->q), s->q, z);
+    for (int i = 0; i < 2; i++) {
+        x[i] *= flat[i];
+        y[i] *= flat[i];
+    }
+    add_slope(x, speed.x, &least, &most);
+    add_slope(y, speed.y, &least, &most);
+    add_slope(z, speed.z, &least, &most);
+    return least > 0 || most < 0;
+}
+
+/* Find the change of sign on [a, b] by halving and secants. */
+static double find_between(const SuperLine *l, double a, double b, double fa, double fb)
+{
+    for (int i = 0; i < 120; i++) {
+        double t = i % 3 == 2 ? 0.5 * (a + b) : (a * fb - b * fa) / (fb - fa);
+        if (!(t > a && t < b))
+            t = 0.5 * (a + b);
+        if (!(t > a && t < b))
+            break;
+        double f = height_at(l, t);
+        if (f == 0)
+            return t;
+        if ((f > 0) == (fa > 0)) {
+            a = t;
+            fa = f;
+        } else {
+            b = t;
+            fb = f;
+        }
+    }
+    return 0.5 * (a + b);
+}
+
+typedef struct HitList {
+    LeafHit *at;
+    int count, most;
+} HitList;
+
+static void search(const SuperLine *l, double a, double b, double fa, double fb, int depth,
+                   HitList *out)
+{
+    bool is_crossed = (fa > 0) != (fb > 0);
+    if (out->count >= out->most)
+        return;
+    Corner c = corner_of(l, a, b);
+    if (norm_at(l->s, c.lo) > 1 + norm_error(l->s) || norm_at(l->s, c.hi) < 1 - norm_error(l->s)) {
+        if (!is_crossed)
+            return;
+    }
+    double middle = 0.5 * (a + b);
+    if (depth >= DEPTH_MAX || !(middle > a && middle < b) || is_monotone(l, &c, middle)) {
+        if (is_crossed)
+            out->at[out->count++] = make_hit(l, find_between(l, a, b, fa, fb), fa > 0 ? 1 : -1);
+        return;
+    }
+    double f = height_at(l, middle);
+    search(l, a, middle, fa, f, depth + 1, out);
+    search(l, middle, b, f, fb, depth + 1, out);
+}
+
+/* Search octant by octant. */
+static int general_hits(const SuperLine *l, bool *is_inside_before, LeafHit *at, int most)
+{
+    const double o[3] = {l->o.x, l->o.y, l->o.z}, d[3] = {l->d.x, l->d.y, l->d.z};
+    double cut[5] = {l->lo};
+    int count = 1;
+    for (int i = 0; i < 3; i++) {
+        double t = -o[i] / d[i];
+        if (!(t > l->lo && t < l->hi))
+            continue;
+        int place = count++;
+        for (; place > 1 && cut[place - 1] > t; place--)
+            cut[place] = cut[place - 1];
+        cut[place] = t;
+    }
+    cut[count] = l->hi;
+    HitList list = {at, 0, most};
+    double f = height_at(l, cut[0]);
+    *is_inside_before = f <= 0;
+    for (int i = 0; i < count; i++) {
+        double next = height_at(l, cut[i + 1]);
+        if (cut[i + 1] > cut[i])
+            search(l, cut[i], cut[i + 1], f, next, 0, &list);
+        f = next;
+    }
+    return list.count;
+}
+
+/* --- operations ---------------------------------------------------------------------------- */
+
+enum { HITS_MAX = 32 };
+
+static int find(const Shape *shape, const Ray *ray, double near, double far, bool *is_inside_before,
+                LeafHit out[HITS_MAX])
+{
+    SuperLine l;
+    *is_inside_before = false;
+    if (!line_init(&l, shape, ray, near, far))
+        return 0;
+    return l.is_convex ? convex_hits(&l, is_inside_before, out)
+                       : general_hits(&l, is_inside_before, out, HITS_MAX);
+}
+
+static bool super_list(const Shape *shape, const Line *line, ShapeScratch *scratch)
+{
+    bool is_inside;
+    LeafHit hits[HITS_MAX];
+    Crossing crossing;
+    int count = find(shape, line->ray, line->near, line->far, &is_inside, hits);
+    for (int i = 0; i < count; i++) {
+        crossing_fill(shape, &hits[i], &crossing);
+        scratch_push(scratch, &crossing);
+    }
+    return is_inside;
+}
+
+static bool super_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Crossing *out)
+{
+    (void)scratch;
+    bool is_inside;
+    LeafHit hits[HITS_MAX];
+    int count = find(shape, ray, ray->tmin, ray->tmax, &is_inside, hits);
+    for (int i = 0; i < count; i++)
+        if (hits[i].t > ray->tmin && hits[i].t < ray->tmax) {
+            crossing_fill(shape, &hits[i], out);
+            return true;
+        }
+    return false;
+}
+
+/* A unit normal from a gradient that may be infinite along some axes. */
+static V3 normal_of(V3 g)
+{
+    double most = v3_max_abs(g);
+    if (isfinite(most))
+        return v3_unit(g);
+    V3 n = v3(isinf(g.x) ? copysign(1, g.x) : 0, isinf(g.y) ? copysign(1, g.y) : 0,
+              isinf(g.z) ? copysign(1, g.z) : 0);
+    return v3_len2(n) > 0 ? v3_unit(n) : v3(1, 0, 0);
+}
+
+static void super_point(const Shape *shape, const Crossing *crossing, V3 p, LocalPoint *out)
+{
+    (void)crossing;
+    const SuperParams *s = &shape->u.super;
+    double norm = norm_at(s, p);
+    out->p = norm > 0 ? v3_scale(p, 1 / norm) : p;
+    out->ng = normal_of(gradient_at(s, out->p));
+    out->error = (4 * norm_error(s) + 8 * EPS_DOUBLE) * v3_sum_abs(out->p);
+}
+
+static bool super_is_inside(const Shape *shape, V3 p)
+{
+    return norm_at(&shape->u.super, p) <= 1;
+}
+
+static Bound super_bound(const Shape *shape)
+{
+    double side = 1 + BOX_SLACK;
+    Bound box = {v3(-side, -side, -side), v3(side, side, side)};
+    return bound_pad(bound_transform(box, &shape->xform));
+}
+
+const ShapeOps super_ops = {.list = super_list,
+                            .closest = super_closest,
+                            .point = super_point,
+                            .is_inside = super_is_inside,
+                            .bound = super_bound};
