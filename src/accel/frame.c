@@ -3,6 +3,10 @@
 
 #include <stdio.h>
 
+/* With so many items a quick build is worth more than the best tree: half the time and memory, for
+ * rays that take as long on meshes. */
+enum { QUICK_BUILD_MIN = 1 << 18 };
+
 IndexFrame frame_of(Bound bound)
 {
     IndexFrame frame = {bound, bound_center(bound), 1};
@@ -115,7 +119,8 @@ Status frame_scene_new(Diag *diag, uint32_t count, int threads, const FrameCallb
     rtcAttachGeometry(out->scene, geometry);
     rtcReleaseGeometry(geometry);
     rtcSetSceneFlags(out->scene, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(out->scene, RTC_BUILD_QUALITY_HIGH);
+    rtcSetSceneBuildQuality(out->scene, count < QUICK_BUILD_MIN ? RTC_BUILD_QUALITY_HIGH
+                                                                : RTC_BUILD_QUALITY_LOW);
     rtcCommitScene(out->scene);
     if (rtcGetDeviceError(out->device) == RTC_ERROR_NONE)
         return OK;

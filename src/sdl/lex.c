@@ -6,6 +6,7 @@
 #include "sdl/lex.h"
 
 #include "base/mem.h"
+#include "sdl/vector_scan.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -33,6 +34,8 @@ typedef struct Lexer {
     size_t count, capacity;
     Open *open; /* heap, ours until the end */
     size_t open_count, open_capacity;
+    int list_size;  /* in a list of mesh2: numbers of its vectors; else 0 */
+    int list_depth; /* parentheses open in it */
     bool is_out_of_memory;
     Token spare; /* handed out when memory is; nobody reads it */
 } Lexer;
@@ -307,11 +310,68 @@ static TokenKind punctuation(char c, char next, size_t *length)
     return mark ? kinds[mark - marks] : TOKEN_ILLEGAL;
 }
 
+/* Return how many numbers the vectors of a list have, if one begins with the brace here. */
+static int list_size(const Lexer *lx)
+{
+    switch ((int)(lx->count ? lx->tokens[lx->count - 1].kind : TOKEN_END)) {
+    case KW_UV_VECTORS:
+        return 2;
+    case KW_VERTEX_VECTORS:
+    case KW_NORMAL_VECTORS:
+    case KW_FACE_INDICES:
+    case KW_NORMAL_INDICES:
+    case KW_UV_INDICES:
+        return 3;
+    default:
+        return 0;
+    }
+}
+
+/* Keep track of the list of mesh2 that the mark ahead begins, ends or nests in. */
+static void track_list(Lexer *lx, TokenKind mark)
+{
+    if (mark == TOKEN_LBRACE || mark == TOKEN_RBRACE) {
+        lx->list_size = mark == TOKEN_LBRACE ? list_size(lx) : 0;
+        lx->list_depth = 0;
+    } else if (mark == TOKEN_LPAREN || mark == TOKEN_RPAREN) {
+        lx->list_depth += mark == TOKEN_LPAREN ? 1 : -1;
+    }
+}
+
+/* Take the plain vectors that come next in a list of mesh2 as one token: a big mesh would be
+ * millions.  What may go on as an expression is left to the parser.  False if there are none. */
+static bool lex_vectors(Lexer *lx)
+{
+    const char *text = lx->text + lx->at, *end = lx->text + lx->size, *at = text, *last = text;
+    TokenKind before = lx->tokens[lx->count - 1].kind;
+    uint32_t count = 0;
+    if (lx->list_depth != 0 || (before != TOKEN_COMMA && before != TOKEN_NUMBER))
+        return false;
+    double numbers[3];
+    while (at < end && *at == '<' && (at = scan_vector(at, end, lx->list_size, numbers))) {
+        const char *next = scan_blanks(at, end);
+        if (next >= end || (*next != ',' && *next != '<' && *next != '}'))
+            break;
+        last = at;
+        count++;
+        at = *next == ',' ? scan_blanks(next + 1, end) : next;
+    }
+    if (count == 0)
+        return false;
+    Token *token = add(lx, TOKEN_VECTORS, lx->at, lx->at + (size_t)(last - text));
+    token->text = text;
+    token->length = count;
+    return true;
+}
+
 static void lex_mark(Lexer *lx)
 {
     size_t length, end = lx->at + 1;
     TokenKind kind = punctuation(byte_at(lx, 0), byte_at(lx, 1), &length);
+    if (kind == TOKEN_LESS && lx->list_size && lex_vectors(lx))
+        return;
     if (kind != TOKEN_ILLEGAL) {
+        track_list(lx, kind);
         add(lx, kind, lx->at, lx->at + length);
     } else if (is_beyond_ascii(byte_at(lx, 0))) {
         while (end < lx->size && is_beyond_ascii(lx->text[end]))

@@ -46,13 +46,15 @@ typedef struct Names {
 
 typedef struct Token {
     TokenKind kind;
-    uint32_t length; /* of text, bytes */
+    uint32_t length; /* of text, bytes; of TOKEN_VECTORS, how many there are */
     Span span;
     union {
         double number;    /* of TOKEN_NUMBER */
         const char *text; /* of identifiers, interned: equal names have equal pointers; of
                              strings the raw bytes between the quotes, escapes not decoded, not
-                             terminated; of TOKEN_ILLEGAL what is wrong, terminated */
+                             terminated; of TOKEN_ILLEGAL what is wrong, terminated; of
+                             TOKEN_VECTORS its beginning in the source: plain vectors with blanks
+                             and commas between them, see vector_scan.h */
         size_t jump;      /* of the `#` of a conditional or loop: index of the `#` of its next
                              branch or its #end; 0: there is none */
     };

@@ -3,6 +3,7 @@
  * Both end in one MeshData whose arrays lie in the scene arena.  Triangles without area are
  * dropped.  SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/read_int.h"
+#include "sdl/vector_scan.h"
 
 #include <string.h>
 
@@ -222,50 +223,121 @@ Node *read_mesh(Parser *p)
 
 /* --- mesh2 --------------------------------------------------------------------------------- */
 
+/* A list of mesh2 being read. */
+typedef struct ListReader {
+    Parser *p;
+    const char *at, *end; /* of plain vectors that are one token */
+    uint32_t left;        /* of them */
+    uint32_t count;       /* wanted */
+} ListReader;
+
 /* Take the word of a list, its brace and its count. */
-static uint32_t read_list_count(Parser *p)
+static ListReader open_list(Parser *p)
 {
     read_open(p);
     long count = parse_int(p, "the count of a mesh list", 0, MESH_ITEMS_MAX);
     parse_comma(p);
-    return (uint32_t)count;
+    return (ListReader){.p = p, .count = (uint32_t)count};
+}
+
+/* Take the brace of a list that has been read. */
+static void close_list(ListReader *list, const char *word)
+{
+    if (list->left)
+        parse_fail(list->p, parse_last_span(list->p), "%s has more vectors than its count, %u",
+                   word, list->count);
+    parse_expect(list->p, TOKEN_RBRACE, word);
+}
+
+/* Return room for a list: as many items as it says, but no more than its text may have. */
+static void *list_room(const ListReader *list, size_t item_size, size_t *capacity)
+{
+    size_t most = parse_last_span(list->p).source->size;
+    *capacity = list->count < most ? list->count : most;
+    return *capacity ? parse_alloc(list->p, *capacity * item_size) : NULL;
+}
+
+/* Read the next vector of 2 or 3 numbers, and the comma behind it. */
+static V3 next_vector(ListReader *list, int size)
+{
+    Parser *p = list->p;
+    double n[3] = {0};
+    if (list->left == 0 && parse_peek(p)->kind == TOKEN_VECTORS) {
+        Token token = parse_next(p);
+        list->at = token.text;
+        list->end = token.span.source->text + token.span.end;
+        list->left = token.length;
+    }
+    if (list->left) {
+        list->at = scan_vector(list->at, list->end, size, n);
+        if (!list->at)
+            parse_fail(p, parse_last_span(p), "vectors of %d numbers wanted here", size);
+        list->at = scan_blanks(list->at, list->end);
+        if (--list->left && *list->at == ',')
+            list->at = scan_blanks(list->at + 1, list->end);
+    } else if (size == 2) {
+        V2 v = parse_v2(p);
+        n[0] = v.u, n[1] = v.v;
+    } else {
+        V3 v = parse_v3(p);
+        n[0] = v.x, n[1] = v.y, n[2] = v.z;
+    }
+    if (list->left == 0)
+        parse_comma(p);
+    return v3(n[0], n[1], n[2]);
+}
+
+/* Warn of a list that has been read before: the later one holds. */
+static void warn_again(Parser *p, bool is_again, const char *word)
+{
+    if (is_again)
+        parse_warn(p, WARN_LANGUAGE, parse_peek(p)->span, "a second %s: the first is dropped",
+                   word);
 }
 
 static void read_vertex_vectors(Parser *p, MeshDraft *d)
 {
-    uint32_t count = read_list_count(p);
-    for (uint32_t i = 0; i < count; i++) {
-        add_vertex(p, d, parse_v3(p));
-        parse_comma(p);
-    }
-    parse_expect(p, TOKEN_RBRACE, "vertex_vectors");
+    warn_again(p, d->mesh->vertex_count > 0, "vertex_vectors");
+    ListReader list = open_list(p);
+    d->mesh->vertices = list_room(&list, sizeof(V3), &d->vertex_capacity);
+    d->mesh->vertex_count = 0;
+    for (uint32_t i = 0; i < list.count; i++)
+        add_vertex(p, d, next_vector(&list, 3));
+    close_list(&list, "vertex_vectors");
 }
 
 static void read_normal_vectors(Parser *p, MeshDraft *d)
 {
-    uint32_t count = read_list_count(p);
-    for (uint32_t i = 0; i < count; i++) {
-        Span span = parse_peek(p)->span;
-        add_normal(p, d, parse_v3(p), span);
-        parse_comma(p);
+    warn_again(p, d->normal_count > 0, "normal_vectors");
+    ListReader list = open_list(p);
+    d->mesh->normals = list_room(&list, sizeof(V3), &d->normal_capacity);
+    d->normal_count = 0;
+    for (uint32_t i = 0; i < list.count; i++) {
+        V3 normal = next_vector(&list, 3);
+        add_normal(p, d, normal, parse_last_span(p));
     }
-    parse_expect(p, TOKEN_RBRACE, "normal_vectors");
+    close_list(&list, "normal_vectors");
 }
 
 static void read_uv_vectors(Parser *p, MeshDraft *d)
 {
-    uint32_t count = read_list_count(p);
-    for (uint32_t i = 0; i < count; i++) {
-        add_uv(p, d, parse_v2(p));
-        parse_comma(p);
+    warn_again(p, d->uv_count > 0, "uv_vectors");
+    ListReader list = open_list(p);
+    d->mesh->uvs = list_room(&list, sizeof(V2), &d->uv_capacity);
+    d->uv_count = 0;
+    for (uint32_t i = 0; i < list.count; i++) {
+        V3 v = next_vector(&list, 2);
+        add_uv(p, d, (V2){v.x, v.y});
     }
-    parse_expect(p, TOKEN_RBRACE, "uv_vectors");
+    close_list(&list, "uv_vectors");
 }
 
 static void read_texture_list(Parser *p, MeshDraft *d)
 {
-    uint32_t count = read_list_count(p);
-    for (uint32_t i = 0; i < count; i++) {
+    warn_again(p, d->texture_count > 0, "texture_list");
+    ListReader list = open_list(p);
+    d->texture_count = 0;
+    for (uint32_t i = 0; i < list.count; i++) {
         if (parse_peek(p)->kind != KW_TEXTURE)
             parse_fail_here(p, "in texture_list, which wants texture blocks");
         const Texture *texture = read_texture(p);
@@ -274,21 +346,20 @@ static void read_texture_list(Parser *p, MeshDraft *d)
         d->textures[d->texture_count++] = texture;
         parse_comma(p);
     }
-    parse_expect(p, TOKEN_RBRACE, "texture_list");
+    close_list(&list, "texture_list");
 }
 
 /* Read one vector of three indices below `limit`. */
-static void read_indices(Parser *p, uint32_t limit, const char *what, uint32_t out[3])
+static void read_indices(ListReader *list, uint32_t limit, const char *what, uint32_t out[3])
 {
-    Span first = parse_peek(p)->span;
-    V3 v = parse_v3(p);
+    Span first = list->left ? parse_last_span(list->p) : parse_peek(list->p)->span;
+    V3 v = next_vector(list, 3);
     const double values[3] = {v.x, v.y, v.z};
     for (int i = 0; i < 3; i++) {
-        double index = trunc(values[i]);
-        if (!(index >= 0 && index < limit))
-            parse_fail(p, span_join(first, parse_last_span(p)),
-                       "%s %g is out of range: there are %u", what, index, limit);
-        out[i] = (uint32_t)index;
+        if (!(values[i] > -1 && values[i] < limit))
+            parse_fail(list->p, list->left ? parse_last_span(list->p) : first,
+                       "%s %g is out of range: there are %u", what, trunc(values[i]), limit);
+        out[i] = (uint32_t)values[i];
     }
 }
 
@@ -312,51 +383,75 @@ static void read_face_textures(Parser *p, const MeshDraft *d, uint32_t out[3])
     }
 }
 
+/* Keep the textures of a face; the list begins with the first face that has some. */
+static void keep_textures(ListReader *list, MeshDraft *d, const uint32_t texture[3])
+{
+    MeshData *m = d->mesh;
+    if (!m->textures) {
+        if (texture[0] == MESH_NO_TEXTURE)
+            return;
+        m->textures = parse_alloc(list->p, 3 * (size_t)list->count * sizeof *m->textures);
+        memset(m->textures, 0xff, 3 * (size_t)list->count * sizeof *m->textures);
+        d->has_texture = true;
+    }
+    memcpy(m->textures + 3 * (size_t)m->triangle_count, texture, 3 * sizeof *texture);
+}
+
 static void read_face_indices(Parser *p, MeshDraft *d)
 {
-    uint32_t count = read_list_count(p);
-    for (uint32_t i = 0; i < count; i++) {
-        MeshTriangle t;
-        read_indices(p, d->mesh->vertex_count, "vertex", t.corner);
-        parse_comma(p);
-        read_face_textures(p, d, t.texture);
-        memcpy(t.normal, no_corners, sizeof t.normal);
-        memcpy(t.uv, no_corners, sizeof t.uv);
-        add_triangle(p, d, &t);
+    ListReader list = open_list(p);
+    MeshData *m = d->mesh;
+    m->corners = list_room(&list, 3 * sizeof *m->corners, &d->corner_capacity);
+    d->corner_capacity *= 3;
+    for (uint32_t i = 0; i < list.count; i++) {
+        uint32_t corner[3], texture[3] = {MESH_NO_TEXTURE, MESH_NO_TEXTURE, MESH_NO_TEXTURE};
+        read_indices(&list, m->vertex_count, "vertex", corner);
+        if (list.left == 0)
+            read_face_textures(p, d, texture);
+        m->corners = add_corners(p, m->corners, m->triangle_count, &d->corner_capacity, corner);
+        keep_textures(&list, d, texture);
+        m->triangle_count++;
     }
-    parse_expect(p, TOKEN_RBRACE, "face_indices");
+    close_list(&list, "face_indices");
+}
+
+/* Return room for three numbers a face, none of them given yet. */
+static uint32_t *face_room(Parser *p, const MeshDraft *d)
+{
+    size_t bytes = 3 * (size_t)d->mesh->triangle_count * sizeof(uint32_t);
+    uint32_t *room = parse_alloc(p, bytes);
+    memset(room, 0xff, bytes);
+    return room;
 }
 
 /* uv_indices: one for each face. */
 static void read_uv_indices(Parser *p, MeshDraft *d)
 {
     Span span = parse_peek(p)->span;
-    uint32_t count = read_list_count(p);
-    if (count != d->mesh->triangle_count)
+    ListReader list = open_list(p);
+    if (list.count != d->mesh->triangle_count)
         parse_fail(p, span, "uv_indices wants one for each of the %u faces, got %u",
-                   d->mesh->triangle_count, count);
-    for (uint32_t i = 0; i < count; i++) {
-        read_indices(p, d->uv_count, "uv vector", d->mesh->uv_corners + 3 * (size_t)i);
-        parse_comma(p);
-    }
-    d->has_uv |= count > 0;
-    parse_expect(p, TOKEN_RBRACE, "uv_indices");
+                   d->mesh->triangle_count, list.count);
+    uint32_t *room = d->mesh->uv_corners = face_room(p, d);
+    for (uint32_t i = 0; i < list.count; i++)
+        read_indices(&list, d->uv_count, "uv vector", room + 3 * (size_t)i);
+    d->has_uv |= list.count > 0;
+    close_list(&list, "uv_indices");
 }
 
 /* normal_indices: for the first faces; the rest stay flat. */
 static void read_normal_indices(Parser *p, MeshDraft *d)
 {
     Span span = parse_peek(p)->span;
-    uint32_t count = read_list_count(p);
-    if (count > d->mesh->triangle_count)
-        parse_fail(p, span, "normal_indices has %u entries for %u faces", count,
+    ListReader list = open_list(p);
+    if (list.count > d->mesh->triangle_count)
+        parse_fail(p, span, "normal_indices has %u entries for %u faces", list.count,
                    d->mesh->triangle_count);
-    for (uint32_t i = 0; i < count; i++) {
-        read_indices(p, d->normal_count, "normal", d->mesh->normal_corners + 3 * (size_t)i);
-        parse_comma(p);
-    }
-    d->has_smooth |= count > 0;
-    parse_expect(p, TOKEN_RBRACE, "normal_indices");
+    uint32_t *room = d->mesh->normal_corners = face_room(p, d);
+    for (uint32_t i = 0; i < list.count; i++)
+        read_indices(&list, d->normal_count, "normal", room + 3 * (size_t)i);
+    d->has_smooth |= list.count > 0;
+    close_list(&list, "normal_indices");
 }
 
 /* What has been read of a mesh2, besides its arrays. */
@@ -368,19 +463,18 @@ typedef struct Mesh2State {
 static void share_indices(Parser *p, MeshDraft *d, const Mesh2State *state, Span span)
 {
     MeshData *m = d->mesh;
-    size_t bytes = (size_t)m->triangle_count * 3 * sizeof *m->corners;
     if (!state->has_uv_indices && d->uv_count == m->vertex_count && d->uv_count > 0) {
-        memcpy(m->uv_corners, m->corners, bytes);
+        m->uv_corners = m->corners;
         d->has_uv = true;
     } else if (!state->has_uv_indices && d->uv_count == 1) {
-        memset(m->uv_corners, 0, bytes); /* the one uv */
+        m->uv_corners = parse_alloc(p, 3 * (size_t)m->triangle_count * sizeof *m->uv_corners);
         d->has_uv = true;
     } else if (!state->has_uv_indices && d->uv_count > 0) {
         parse_fail(p, span, "%u uv_vectors for %u vertices, and no uv_indices", d->uv_count,
                    m->vertex_count);
     }
     if (!state->has_normal_indices && d->normal_count == m->vertex_count && d->normal_count > 0) {
-        memcpy(m->normal_corners, m->corners, bytes);
+        m->normal_corners = m->corners;
         d->has_smooth = true;
     } else if (!state->has_normal_indices && d->normal_count > 0) {
         parse_fail(p, span, "%u normal_vectors for %u vertices, and no normal_indices",
@@ -388,26 +482,46 @@ static void share_indices(Parser *p, MeshDraft *d, const Mesh2State *state, Span
     }
 }
 
+static bool is_flat_face(const MeshData *m, uint32_t face)
+{
+    const uint32_t *c = m->corners + 3 * (size_t)face;
+    const V3 corner[3] = {m->vertices[c[0]], m->vertices[c[1]], m->vertices[c[2]]};
+    return read_triangle_is_flat(corner);
+}
+
+/* Move the entries of one list of three numbers a face together that stay. */
+static void keep_faces(uint32_t *list, const bool *is_dropped, uint32_t count)
+{
+    size_t kept = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (is_dropped[i])
+            continue;
+        memmove(list + 3 * kept, list + 3 * (size_t)i, 3 * sizeof *list);
+        kept++;
+    }
+}
+
 /* Drop faces without area, keeping the others in order. */
 static void drop_flat_faces(Parser *p, MeshDraft *d, Span span)
 {
     MeshData *m = d->mesh;
-    uint32_t kept = 0;
-    uint32_t *lists[4] = {m->corners, m->normal_corners, m->uv_corners, m->textures};
-    for (uint32_t i = 0; i < m->triangle_count; i++) {
-        const uint32_t *c = m->corners + 3 * (size_t)i;
-        V3 corner[3] = {m->vertices[c[0]], m->vertices[c[1]], m->vertices[c[2]]};
-        if (read_triangle_is_flat(corner))
-            continue;
-        for (int list = 0; list < 4; list++)
-            memmove(lists[list] + 3 * (size_t)kept, lists[list] + 3 * (size_t)i,
-                    3 * sizeof *lists[list]);
-        kept++;
-    }
-    if (kept < m->triangle_count)
-        parse_warn(p, WARN_GEOMETRY, span, "%u degenerate triangles: they have no area",
-                   m->triangle_count - kept);
-    m->triangle_count = kept;
+    uint32_t first = 0, count = m->triangle_count, flat = 0;
+    while (first < count && !is_flat_face(m, first))
+        first++;
+    if (first == count)
+        return;
+    bool *is_dropped = parse_alloc(p, count);
+    for (uint32_t i = first; i < count; i++)
+        flat += is_dropped[i] = is_flat_face(m, i);
+    /* Lists may be one. */
+    uint32_t *uvs = m->uv_corners == m->corners ? NULL : m->uv_corners;
+    uint32_t *normals = m->normal_corners == m->corners ? NULL : m->normal_corners;
+    uint32_t *lists[4] = {m->corners, uvs, normals, m->textures};
+    for (int i = 0; i < 4; i++)
+        if (lists[i])
+            keep_faces(lists[i], is_dropped, count);
+    parse_warn(p, WARN_GEOMETRY, span, "%u degenerate triangles: they have no area", flat);
+    m->triangle_count = count - flat;
 }
 
 /* Read one list if its word comes next; the order of the lists is checked here. */

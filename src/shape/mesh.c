@@ -127,6 +127,12 @@ static bool mesh_list(const Shape *shape, const Line *part, ShapeScratch *scratc
     return false;
 }
 
+/* Are three normals one, as the language measures it? */
+static bool are_equal(V3 a, V3 b, V3 c)
+{
+    return v3_len2(v3_sub(a, b)) <= EPS_LANGUAGE && v3_len2(v3_sub(a, c)) <= EPS_LANGUAGE;
+}
+
 static void mesh_point(const Shape *shape, const Crossing *crossing, V3 p, LocalPoint *out)
 {
     const MeshData *mesh = shape->u.mesh;
@@ -141,6 +147,8 @@ static void mesh_point(const Shape *shape, const Crossing *crossing, V3 p, Local
     if (!mesh->normals || nc[0] == UINT32_MAX)
         return;
     const V3 *n = mesh->normals;
+    if (!mesh->is_smooth_by_equals && are_equal(n[nc[0]], n[nc[1]], n[nc[2]]))
+        return;
     V3 ns = v3_mad(v3_mad(v3_scale(n[nc[0]], 1 - u - v), u, n[nc[1]]), v, n[nc[2]]);
     out->is_smooth = v3_len2(ns) > 0;
     out->ns = v3_unit(v3_dot(ns, out->ng) < 0 ? v3_neg(ns) : ns);

@@ -19,6 +19,8 @@ struct MeshData {
     uint32_t *textures;       /* 3 a triangle, into the mesh's texture list (scene), or NULL */
     bool has_inside;          /* inside_vector was given */
     V3 inside_vector;         /* unit */
+    bool is_smooth_by_equals; /* triangles with three equal normals have them; else the language
+                                 takes them for flat */
     bool is_turned;           /* the winding's normals point inward: set by mesh_index */
     TriIndex *index;          /* made by mesh_index; freed by mesh_done */
     Bound bound;

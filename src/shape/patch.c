@@ -263,6 +263,7 @@ bool patch_mesh(Arena *arena, const Patch *patch, int u_halvings, int v_halvings
                       .corners = ARENA_ARRAY(arena, uint32_t, 3 * triangles),
                       .normal_corners = ARENA_ARRAY(arena, uint32_t, 3 * triangles)};
     out->uv_corners = out->corners;
+    out->is_smooth_by_equals = true;
     if (!out->vertices || !out->normals || !out->uvs || !out->corners || !out->normal_corners)
         return false;
     make_corners(patch, rows, columns, out);

@@ -1,232 +1,172 @@
-/* Meshes as shapes: solids and sheets, smooth normals, uv, instances, CSG.
+/* Meshes as they are read: lists of plain vectors and of expressions are the same, and normals.
  * SPDX-License-Identifier: Apache-2.0 */
-#include "shape/mesh.h"
-
 #include "base/rng.h"
-#include "math/sample.h"
+#include "sdl/sdl.h"
+#include "sdl/vector_scan.h"
+#include "shape/mesh.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
 #include <cmocka.h>
 
-static Arena *arena;
-static ShapeScratch *scratch;
-static Diag diag;
-
-static void no_sink(void *ctx, const char *text)
+static Status load(const char *text, Scene **out)
 {
-    (void)ctx, (void)text;
-}
-
-static int set_up(void **state)
-{
-    (void)state;
-    arena = arena_new();
-    scratch = shape_scratch_new();
-    diag_init(&diag, no_sink, NULL);
-    return !arena || !scratch;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    arena_free(arena);
-    shape_scratch_free(scratch);
+    Diag diag;
+    diag_init(&diag, diag_drop, NULL);
+    const SdlOptions options = {.width = 320, .height = 240, .threads = 1};
+    Status status = sdl_load_text(&diag, "test.pms", text, strlen(text), &options, out);
     diag_done(&diag);
-    return 0;
+    return status;
 }
 
-/* A cube of two triangles a side; is_turned: wound the other way. */
-static MeshData *cube_mesh(bool has_inside, bool is_turned, int triangles)
+static Scene *scene_of(const char *text)
 {
-    static const uint32_t sides[12][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6},
-                                          {0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3},
-                                          {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-    MeshData *mesh = ARENA_NEW(arena, MeshData);
-    mesh->vertices = ARENA_ARRAY(arena, V3, 8);
-    for (int i = 0; i < 8; i++)
-        mesh->vertices[i] = v3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
-    mesh->vertex_count = 8;
-    mesh->triangle_count = (uint32_t)triangles;
-    mesh->corners = ARENA_ARRAY(arena, uint32_t, 36);
-    for (int i = 0; i < 12; i++)
-        for (int k = 0; k < 3; k++)
-            mesh->corners[3 * i + (is_turned ? 2 - k : k)] = sides[i][k];
-    mesh->has_inside = has_inside;
-    mesh->inside_vector = v3(0, 1, 0);
-    assert_int_equal(mesh_index(&diag, mesh, 1), OK);
-    return mesh;
+    Scene *scene = NULL;
+    assert_int_equal(load(text, &scene), OK);
+    return scene;
 }
 
-static Ray random_ray(Rng *rng)
+/* The same mesh2 four times: plain, as expressions, with comments, and from a loop. */
+static void test_plain_vectors_are_what_expressions_are(void **state)
 {
-    V2 u = {rng_double(rng), rng_double(rng)}, w = {rng_double(rng), rng_double(rng)};
-    return (Ray){v3_scale(warp_sphere(w), 2.5), warp_sphere(u), 0, INFINITY};
+    (void)state;
+    Scene *scene = scene_of(
+        "#version 3.7;\n"
+        "mesh2 { vertex_vectors { 4, <0,0,.5>,<1.5e0,-0,0> , < +0.1 , 1 , -2.25E-1 >\n<1,1,1> }\n"
+        "  normal_vectors { 2, <0,0,-1>,<0,.5,-1> } uv_vectors { 2, <0,0>,<1,.25> }\n"
+        "  face_indices { 2, <0,1,2>,<1,2,3> } uv_indices { 2, <0,1,1>, <1,1,0> }\n"
+        "  normal_indices { 1, <0,1,1> } inside_vector z }\n"
+        "mesh2 { vertex_vectors { 4, z/2, <3,0,0>*.5, <.1,1,-.225>+0, (<1,1,1>) }\n"
+        "  normal_vectors { 2, -z, y/2-z } uv_vectors { 2, 0*u, <2,.5>/2 }\n"
+        "  face_indices { 1+1, <0,1,1+1>,<1,2,sqrt(9)> } uv_indices { 2, <0,1,1>+0, <1,1,0>*1 }\n"
+        "  normal_indices { 1, y+z } inside_vector z }\n"
+        "mesh2 { vertex_vectors { 4, <0,0,.5>, /* a */ <1.5,0,0>, // b\n <.1,1,-.225>,\n"
+        "    vaxis_rotate(<1,1,1>, <0,1,0>, 0) }\n"
+        "  normal_vectors { 2, <0,0,-1>, <0,.5,-1>*1 } uv_vectors { 2, <0,0> + 0, <1,.25>, }\n"
+        "  face_indices { 2, <0,1,2>, <1,2,3>, } uv_indices { 2 <0,1,1> <1,1,0> }\n"
+        "  normal_indices { 1, <0,1,1> } inside_vector z }\n"
+        "mesh2 { vertex_vectors { 4, #if (1 < 2) <0,0,.5>, #end <1.5,0,0>\n"
+        "    #local I = 0; #while (I < 1) , <.1,1,-.225> #local I = I + 1; #end, <1,1,1> }\n"
+        "  normal_vectors { 2, <0,0,-1>,<0,.5,-1> } uv_vectors { 2, <0,0>,<1,.25> }\n"
+        "  face_indices { 2, <0,1,2> #if (1) , <1,2,3> #end } uv_indices { 2, <0,1,1>, <1,1,0> }\n"
+        "  normal_indices { 1, <0,1,1> } inside_vector z }\n");
+    assert_int_equal(scene->mesh_count, 4);
+    const MeshData *a = scene->meshes[0];
+    assert_true(a->vertices[2].z == -.225 && a->vertices[1].x == 1.5);
+    for (int i = 1; i < 4; i++) {
+        const MeshData *b = scene->meshes[i];
+        assert_int_equal(b->vertex_count, 4);
+        assert_int_equal(b->triangle_count, 2);
+        for (int k = 0; k < 4; k++)
+            assert_true(v3_dist(a->vertices[k], b->vertices[k]) < 1e-15);
+        for (int k = 0; k < 2; k++)
+            assert_true(v3_dist(a->normals[k], b->normals[k]) == 0);
+        assert_memory_equal(a->uvs, b->uvs, 2 * sizeof(V2));
+        assert_memory_equal(a->corners, b->corners, 6 * sizeof(uint32_t));
+        assert_memory_equal(a->uv_corners, b->uv_corners, 6 * sizeof(uint32_t));
+        assert_memory_equal(a->normal_corners, b->normal_corners, 6 * sizeof(uint32_t));
+    }
+    scene_free(scene);
 }
 
-/* The solid mesh of a cube is the cube: the same crossings, inside, and outward normals
- * whatever the winding. */
-static void check_is_cube(MeshData *mesh, const Xform *xform)
+static void test_counts_are_kept(void **state)
 {
-    Shape *a = shape_mesh(arena, mesh), *b = shape_box(arena, v3(-1, -1, -1), v3(1, 1, 1));
-    shape_transform(a, xform);
-    shape_transform(b, xform);
-    ShapeScratch *other = shape_scratch_new();
-    for (uint32_t i = 0; i < 3000; i++) {
-        Rng rng = rng_at(41, 1, i);
-        Ray ray = random_ray(&rng);
-        ray.o = xform_point(xform, ray.o);
-        CrossList p, q;
-        shape_crossings(a, &ray, scratch, &p);
-        shape_crossings(b, &ray, other, &q);
-        assert_int_equal(p.count, q.count);
-        for (int k = 0; k < p.count; k++) {
-            ShapePoint m, n;
-            assert_true(fabs(p.items[k].t - q.items[k].t) <=
-                        p.items[k].t_error + q.items[k].t_error);
-            assert_int_equal(p.items[k].change, q.items[k].change);
-            shape_point(&p.items[k], &ray, &m);
-            shape_point(&q.items[k], &ray, &n);
-            assert_true(v3_dot(m.ng, n.ng) > 1 - 1e-12);
-            assert_true(v3_dist(m.p, n.p) <
-                        p.items[k].t_error + q.items[k].t_error + m.p_error + n.p_error);
-        }
+    (void)state;
+    Scene *scene = NULL;
+    assert_int_equal(load("mesh2 { vertex_vectors { 2, <0,0,0>,<1,0,0>,<0,1,0> }\n"
+                          "face_indices { 1, <0,1,1> } }",
+                          &scene),
+                     ERR_SYNTAX);
+    assert_int_equal(load("mesh2 { vertex_vectors { 4, <0,0,0>,<1,0,0>,<0,1,0> }\n"
+                          "face_indices { 1, <0,1,2> } }",
+                          &scene),
+                     ERR_SYNTAX);
+    assert_int_equal(load("mesh2 { vertex_vectors { 3, <0,0,0>,<1,0,0>,<0,1,0> }\n"
+                          "face_indices { 400000000, <0,1,2> } }",
+                          &scene),
+                     ERR_SYNTAX);
+    /* A list that the lexer takes for another one. */
+    assert_int_equal(load("mesh2 { vertex_vectors { 3, #if (0) } uv_vectors { 3, #end\n"
+                          "<0,0>,<1,0>,<0,1> } }",
+                          &scene),
+                     ERR_SYNTAX);
+}
+
+static void test_flat_faces_are_dropped_from_all_lists(void **state)
+{
+    (void)state;
+    Scene *scene =
+        scene_of("mesh2 { vertex_vectors { 4, <0,0,0>,<1,0,0>,<0,1,0>,<2,0,0> }\n"
+                 "normal_vectors { 4, <0,0,1>,<0,1,1>,<0,2,1>,<0,3,1> }\n"
+                 "texture_list { 2, texture { pigment { rgb 1 } } texture { pigment { rgb 0 } } }\n"
+                 "face_indices { 3, <0,1,2>,0, <0,1,3>, <1,2,3>,1 } }\n");
+    const MeshData *m = scene->meshes[0];
+    const uint32_t corners[] = {0, 1, 2, 1, 2, 3}, textures[] = {0, 0, 0, 1, 1, 1};
+    assert_int_equal(m->triangle_count, 2);
+    assert_memory_equal(m->corners, corners, sizeof corners);
+    assert_memory_equal(m->normal_corners, corners, sizeof corners);
+    assert_memory_equal(m->textures, textures, sizeof textures);
+    scene_free(scene);
+}
+
+static void test_equal_normals_are_flat(void **state)
+{
+    (void)state;
+    Scene *scene =
+        scene_of("mesh { smooth_triangle { 0, y, <1,1,0>, y, <0,1,1>, y } }\n" /* probe */
+                 "mesh { smooth_triangle { 0, y, <1,1,0>, y, <0,1,1>, y+x/1000 } }\n");
+    ShapeScratch *scratch = shape_scratch_new();
+    for (int i = 0; i < 2; i++) {
+        Ray ray = {v3(.2, 5, .2), v3(0, -1, 0), 0, INFINITY};
         Crossing c;
-        if (shape_closest(a, &ray, scratch, &c)) {
-            int first = q.items[0].t > 0 ? 0 : 1;
-            assert_int_equal(c.change, q.items[first].change);
-        }
-        assert_int_equal(shape_is_inside(a, ray.o), shape_is_inside(b, ray.o));
+        ShapePoint point;
+        assert_true(shape_closest(scene->objects[i].shape, &ray, scratch, &c));
+        shape_point(&c, &ray, &point);
+        assert_true(fabs(point.ns.y - (i ? 1 : .5773502691896258)) < 1e-6);
     }
-    shape_scratch_free(other);
+    shape_scratch_free(scratch);
+    scene_free(scene);
 }
 
-static void test_solid(void **state)
+static void test_plain_numbers_are_exact(void **state)
 {
     (void)state;
-    MeshData *mesh = cube_mesh(true, false, 12), *turned = cube_mesh(true, true, 12);
-    assert_int_not_equal(mesh->is_turned, turned->is_turned);
-    Xform plain = XFORM_IDENTITY, stretch = xform_scale(v3(1, -0.5, 2));
-    Xform turn = xform_rotate(v3(1, 2, 3)), move = xform_translate(v3(3, -4, 5));
-    Xform x = xform_then(&stretch, &turn);
-    x = xform_then(&x, &move);
-    check_is_cube(mesh, &plain);
-    check_is_cube(turned, &plain);
-    check_is_cube(mesh, &x); /* an instance: the data is shared */
-    check_is_cube(turned, &x);
-    mesh_done(mesh);
-    mesh_done(turned);
-}
-
-/* Edges and corners are met once: a ray through the middle of a face, along its diagonal. */
-static void test_edges(void **state)
-{
-    (void)state;
-    MeshData *mesh = cube_mesh(true, false, 12);
-    Shape *shape = shape_mesh(arena, mesh);
-    CrossList list;
-    static const V3 aims[4] = {{0, 0, 0}, {0.5, 0.5, 0}, {-0.25, -0.25, 0}, {0.25, -0.25, 0}};
-    for (int i = 0; i < 4; i++) {
-        Ray ray = {v3_add(aims[i], v3(0, 0, -5)), {0, 0, 1}, 0, INFINITY};
-        shape_crossings(shape, &ray, scratch, &list);
-        assert_int_equal(list.count, 2);
-        assert_int_equal(list.items[0].change, 1);
+    Rng rng = rng_at(12, 1, 0);
+    for (int i = 0; i < 20000; i++) {
+        char text[100];
+        double x = ldexp(rng_double(&rng) - .5, (int)(20 * rng_double(&rng)) - 10), out[3];
+        int digits = (int)(14 * rng_double(&rng));
+        int length =
+            snprintf(text, sizeof text, i % 2 ? "<%.*f,1 , -.5>" : "<%.*e,1,-.5>", digits, x);
+        const char *end = scan_vector(text, text + length, 3, out);
+        if (!end)
+            continue; /* too many digits */
+        assert_ptr_equal(end, text + length);
+        assert_true(out[0] == strtod(text + 1, NULL) && out[1] == 1 && out[2] == -.5);
+        assert_null(scan_vector(text, text + length - 1, 3, out));
+        assert_null(scan_vector(text, text + length, 2, out));
     }
-    mesh_done(mesh);
-}
-
-/* Without an inside vector, or where it has a hole, a mesh is sheets. */
-static void test_sheets(void **state)
-{
-    (void)state;
-    MeshData *open = cube_mesh(true, false, 2), *thin = cube_mesh(false, false, 12);
-    Shape *a = shape_mesh(arena, open), *b = shape_mesh(arena, thin);
-    Ray ray = {{0.1, 0.2, -5}, {0, 0, 1}, 0, INFINITY};
-    CrossList list;
-    shape_crossings(a, &ray, scratch, &list);
-    assert_int_equal(list.count, 1);
-    assert_int_equal(list.items[0].change, 0);
-    shape_crossings(b, &ray, scratch, &list);
-    assert_int_equal(list.count, 2);
-    assert_int_equal(list.items[1].change, 0);
-    assert_false(shape_is_solid(b));
-    assert_false(shape_is_inside(b, v3(0, 0, 0)));
-    assert_true(shape_is_solid(a));
-    Crossing c;
-    assert_true(shape_closest(b, &ray, scratch, &c));
-    assert_true(c.t == 4 && c.change == 0);
-    mesh_done(open);
-    mesh_done(thin);
-}
-
-/* A hole drilled through a mesh. */
-static void test_csg(void **state)
-{
-    (void)state;
-    MeshData *mesh = cube_mesh(true, false, 12);
-    Shape *children[2] = {shape_mesh(arena, mesh), shape_sphere(arena, v3(0, 0, 0), 0.5)};
-    shape_invert(children[1]);
-    Shape *d = shape_csg(arena, SHAPE_INTERSECTION, children, 2);
-    shape_finish(arena, d);
-    Ray ray = {{0, 0, -5}, {0, 0, 1}, 0, INFINITY};
-    CrossList list;
-    shape_crossings(d, &ray, scratch, &list);
-    assert_int_equal(list.count, 4);
-    static const double at[4] = {4, 4.5, 5.5, 6};
-    for (int i = 0; i < 4; i++)
-        assert_true(fabs(list.items[i].t - at[i]) < 1e-14);
-    mesh_done(mesh);
-}
-
-static void test_smooth_and_uv(void **state)
-{
-    (void)state;
-    MeshData mesh = {.vertex_count = 3, .triangle_count = 2};
-    V3 vertices[3] = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
-    V3 normals[3] = {v3_unit(v3(-1, 0, -1)), v3_unit(v3(1, 0, -1)), v3_unit(v3(0, 1, -1))};
-    V2 uvs[3] = {{0, 0}, {1, 0}, {0.5, 1}};
-    uint32_t corners[6] = {0, 1, 2, 0, 1, 2};
-    uint32_t normal_corners[6] = {0, 1, 2, UINT32_MAX, UINT32_MAX, UINT32_MAX};
-    mesh.vertices = vertices, mesh.corners = corners, mesh.uv_corners = corners;
-    mesh.normals = normals, mesh.normal_corners = normal_corners, mesh.uvs = uvs;
-    assert_int_equal(mesh_index(&diag, &mesh, 1), OK);
-    Shape *shape = shape_mesh(arena, &mesh);
-    Ray ray = {{0.25, -0.25, -5}, {0, 0, 1}, 0, INFINITY};
-    Crossing c;
-    ShapePoint p;
-    assert_true(shape_closest(shape, &ray, scratch, &c));
-    assert_int_equal(c.part, 0); /* of two equal triangles the first */
-    V2 uv = shape_uv(shape, c.part, c.u, c.v, ray_at(&ray, c.t));
-    assert_true(fabs(uv.u - 0.625) < 1e-12 && fabs(uv.v - 0.375) < 1e-12); /* measured */
-    shape_point(&c, &ray, &p);
-    assert_true(p.ng.z == -1 && p.ns.z > -1 && p.ns.z < 0);
-    c.part = 1;
-    shape_point(&c, &ray, &p);
-    assert_true(p.ns.z == -1);
-    mesh_done(&mesh);
-}
-
-static void test_empty(void **state)
-{
-    (void)state;
-    MeshData mesh = {.vertex_count = 0};
-    assert_int_equal(mesh_index(&diag, &mesh, 1), OK);
-    Shape *shape = shape_mesh(arena, &mesh);
-    Ray ray = {{0, 0, -5}, {0, 0, 1}, 0, INFINITY};
-    Crossing c;
-    assert_false(shape_closest(shape, &ray, scratch, &c));
-    assert_true(bound_is_empty(shape_bound(shape)));
-    mesh_done(&mesh);
+    double out[3];
+    static const char *const none[] = {"<1,2>",       "<1,2,x>",      "<1,2,3+1>",
+                                       "<1,,3>",      "<.,1,2>",      "<1e,2,3>",
+                                       "<1,2,1.2.3>", "<1,2,3/*a*/>", "<1234567890123456,1,1>"};
+    for (size_t i = 0; i < sizeof none / sizeof none[0]; i++)
+        assert_null(scan_vector(none[i], none[i] + strlen(none[i]), 3, out));
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_solid),         cmocka_unit_test(test_edges),
-        cmocka_unit_test(test_sheets),        cmocka_unit_test(test_csg),
-        cmocka_unit_test(test_smooth_and_uv), cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_plain_vectors_are_what_expressions_are),
+        cmocka_unit_test(test_counts_are_kept),
+        cmocka_unit_test(test_flat_faces_are_dropped_from_all_lists),
+        cmocka_unit_test(test_equal_normals_are_flat),
+        cmocka_unit_test(test_plain_numbers_are_exact),
     };
-    return cmocka_run_group_tests_name("mesh", tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, NULL, NULL);
 }

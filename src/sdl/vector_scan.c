@@ -1,0 +1,86 @@
+/* Plain vectors, read straight from the text.  SPDX-License-Identifier: Apache-2.0 */
+#include "sdl/vector_scan.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum {
+    DIGITS_EXACT = 15, /* a decimal of so many digits is exact in a double */
+    POWER_EXACT = 22   /* so is a power of ten up to this */
+};
+
+static const double powers[POWER_EXACT + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                               1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                               1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
+static inline bool is_digit(char c)
+{
+    return (unsigned char)(c - '0') < 10;
+}
+
+const char *scan_blanks(const char *at, const char *end)
+{
+    while (at < end && (*at == ' ' || (*at >= '\t' && *at <= '\r')))
+        at++;
+    return at;
+}
+
+/* Read an exponent after its letter; NULL if there is none. */
+static const char *scan_exponent(const char *at, const char *end, int *exponent)
+{
+    bool is_negative = at < end && *at == '-';
+    if (at < end && (*at == '-' || *at == '+'))
+        at++;
+    int value = 0;
+    const char *first = at;
+    for (; at < end && is_digit(*at) && at - first < 4; at++)
+        value = value * 10 + (*at - '0');
+    *exponent += is_negative ? -value : value;
+    return at > first ? at : NULL;
+}
+
+/* Read a number with a sign or without. */
+static const char *scan_number(const char *at, const char *end, double *out)
+{
+    bool is_negative = at < end && *at == '-';
+    if (at < end && (*at == '-' || *at == '+'))
+        at++;
+    uint64_t digits = 0;
+    const char *first = at;
+    for (; at < end && is_digit(*at); at++)
+        digits = digits * 10 + (uint64_t)(*at - '0');
+    ptrdiff_t count = at - first;
+    int exponent = 0;
+    if (at < end && *at == '.') {
+        const char *point = ++at;
+        for (; at < end && is_digit(*at); at++)
+            digits = digits * 10 + (uint64_t)(*at - '0');
+        exponent = (int)(point - at);
+        count += at - point;
+    }
+    if (count == 0 || count > DIGITS_EXACT)
+        return NULL;
+    if (at < end && (*at == 'e' || *at == 'E') && !(at = scan_exponent(at + 1, end, &exponent)))
+        return NULL;
+    if (exponent < -POWER_EXACT || exponent > POWER_EXACT)
+        return NULL;
+    double value =
+        exponent < 0 ? (double)digits / powers[-exponent] : (double)digits * powers[exponent];
+    *out = is_negative ? -value : value;
+    return at;
+}
+
+const char *scan_vector(const char *at, const char *end, int size, double *out)
+{
+    for (int i = 0; i < size; i++) {
+        /* `<` the first time, then commas. */
+        if (at >= end || *at != (i ? ',' : '<'))
+            return NULL;
+        at = scan_number(scan_blanks(at + 1, end), end, &out[i]);
+        if (!at)
+            return NULL;
+        at = scan_blanks(at, end);
+    }
+    return at < end && *at == '>' ? at + 1 : NULL;
+}

@@ -1,0 +1,15 @@
+/* Plain vectors, read straight from the text: what the long lists of mesh2 consist of.
+ * SPDX-License-Identifier: Apache-2.0 */
+#ifndef PMS_SDL_VECTOR_SCAN_H
+#define PMS_SDL_VECTOR_SCAN_H
+
+/* Read `<n, n>` or `<n, n, n>` with `size` numbers at `at`, which must begin with `<`.
+ *
+ * Returns what follows it, or NULL: it is something else, a comment is in it, or a number has
+ * more digits than are exact; then the ordinary way reads it. */
+const char *scan_vector(const char *at, const char *end, int size, double *out);
+
+/* Skip blanks; returns what follows, or `end`. */
+const char *scan_blanks(const char *at, const char *end);
+
+#endif
