@@ -190,17 +190,25 @@ int bernstein_quadratic(const double b[3], double discriminant, double out[2])
     return 2;
 }
 
+/* Guess the root between lo and hi: where the parabola at the middle of [0, 1] has it. */
+static inline double guess(const BernsteinCenter *p, double lo, double hi)
+{
+    double a = p->c[2], b = 0.5 * p->c[1], c = p->c[0], room = b * b - a * c;
+    double q = -(b + copysign(sqrt(room > 0 ? room : 0), b));
+    double first = 0.5 + c / q, last = 0.5 + q / a;
+    return first > lo && first < hi ? first : last > lo && last < hi ? last : 0.5 * (lo + hi);
+}
+
 /* Find the one root, by the signs of the ends: Newton steps, halving where they leave the bracket
  * or do not shrink it fast. */
 ALWAYS_INLINE double find_of_degree(const double *b, int degree)
 {
-    double lo = 0, hi = 1, x = b[0] / (b[0] - b[degree]);
     bool is_rising = b[0] < 0;
     BernsteinCenter center;
     center_of_degree(b, degree, &center);
     center.degree = degree;
-    if (!(x > 0 && x < 1))
-        x = 0.5;
+    bool is_late = (center.c[0] < 0) == is_rising;
+    double lo = is_late ? 0.5 : 0, hi = is_late ? 1 : 0.5, x = guess(&center, lo, hi);
     for (int i = 0; i < 100; i++) {
         double slope, value = bernstein_center_at(&center, x, &slope);
         if ((value < 0) == is_rising)

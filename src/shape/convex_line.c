@@ -32,3 +32,14 @@ bool convex_line_cross(ConvexDistance distance, const void *line, double lo, dou
     return approach(distance, line, 1, precision, in) && *in < hi &&
            approach(distance, line, -1, precision, out) && *in < *out;
 }
+
+bool convex_line_first(ConvexDistance distance, const void *line, double lo, double hi, double end,
+                       double precision, double *out, bool *is_entry)
+{
+    double slope;
+    *is_entry = distance(line, lo, &slope) > 0;
+    *out = *is_entry ? lo : end;
+    if (!approach(distance, line, *is_entry ? 1 : -1, precision, out))
+        return false;
+    return *out > lo && *out < hi;
+}

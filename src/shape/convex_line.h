@@ -19,4 +19,9 @@ typedef double (*ConvexDistance)(const void *line, double s, double *slope);
 bool convex_line_cross(ConvexDistance distance, const void *line, double lo, double hi,
                        double precision, double *in, double *out);
 
+/* Find the first place between lo and hi where a line enters or leaves, *is_entry telling which;
+ * false when there is none.  end: the line is outside there and beyond. */
+bool convex_line_first(ConvexDistance distance, const void *line, double lo, double hi, double end,
+                       double precision, double *out, bool *is_entry);
+
 #endif

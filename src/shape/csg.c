@@ -258,7 +258,7 @@ static bool list_child(const Shape *node, int i, const Line *line, const BlockCu
     int k = i % BLOCK;
     if (cut->near[k] > cut->far[k])
         return block->is_inside_beyond[k];
-    Line part = {line->ray, line->inverse, cut->near[k], cut->far[k]};
+    Line part = {line->ray, line->inverse, cut->near[k], cut->far[k], false};
     return list_reached(node->children[i], &part, scratch);
 }
 

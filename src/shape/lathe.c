@@ -79,38 +79,36 @@ static double straight_discriminant(const double x[2], const double z[2], const 
     return xr * xr + zr * zr - xz * xz;
 }
 
-int lathe_roots(const RevolveData *data, const RevolvePiece *piece, const RevolveLine *l,
-                RevolveRoot *out, bool *is_rising)
+int lathe_roots(const RevolveData *data, const RevolvePiece *piece, const RevolvePart *part,
+                const RevolveLine *l, RevolveRoot *out, bool is_within[2])
 {
-    RevolvePart part;
     int n = data->degree;
-    if (!revolve_cut(data, piece, l, &part))
-        return 0;
     double r[4], s[4], x[4], z[4], g[BERNSTEIN_DEGREE_MAX + 1] = {0}, at[BERNSTEIN_DEGREE_MAX];
-    bool is_whole = !part.is_cut[0] && !part.is_cut[1];
+    bool is_whole = !part->is_cut[0] && !part->is_cut[1];
     if (is_whole) {
         for (int i = 0; i <= n; i++)
             r[i] = piece->r[i], s[i] = (piece->y[i] - l->f.y) / l->e.y;
     } else {
-        bernstein_part(piece->r, n, part.from, part.to, r);
-        bernstein_part(piece->y, n, part.from, part.to, s);
+        bernstein_part(piece->r, n, part->from, part->to, r);
+        bernstein_part(piece->y, n, part->from, part->to, s);
         for (int i = 0; i <= n; i++)
-            s[i] = part.is_tiny ? part.s[0] + (part.s[1] - part.s[0]) * i / n
-                                : (s[i] - l->f.y) / l->e.y;
-        s[0] = part.s[0];
-        s[n] = part.s[1];
+            s[i] = part->is_tiny ? part->s[0] + (part->s[1] - part->s[0]) * i / n
+                                 : (s[i] - l->f.y) / l->e.y;
+        s[0] = part->s[0];
+        s[n] = part->s[1];
     }
     for (int i = 0; i <= n; i++)
         x[i] = l->f.x + l->e.x * s[i], z[i] = l->f.z + l->e.z * s[i];
     bernstein_add_product(x, x, n, 1, g);
     bernstein_add_product(z, z, n, 1, g);
     bernstein_add_product(r, r, n, -1, g);
-    *is_rising = g[0] < 0;
+    is_within[0] = g[0] < 0;
+    is_within[1] = g[2 * n] < 0;
     int count = n == 1 ? bernstein_quadratic(g, straight_discriminant(x, z, r), at)
                        : bernstein_roots(g, 2 * n, at);
     for (int i = 0; i < count; i++) {
         out[i].s = bernstein_value(s, n, at[i]);
-        out[i].u = part.from + (part.to - part.from) * at[i];
+        out[i].u = part->from + (part->to - part->from) * at[i];
     }
     return count;
 }

@@ -49,7 +49,9 @@ static OvusPart part_at(const OvusParams *o, double rho, double y)
 
 typedef struct OvusLine {
     const OvusParams *ovus;
-    V3 f, e; /* e unit */
+    const LocalRay *ray;
+    V3 f, e;            /* e unit */
+    double base, speed; /* t = base + s / speed */
 } OvusLine;
 
 static double ovus_distance(const void *line, double s, double *slope)
@@ -82,34 +84,66 @@ static V3 ovus_normal(const OvusParams *o, V3 p, OvusPart *part)
     return v3_unit(v3(p.x * out, p.y - part->y, p.z * out));
 }
 
+/* Set up a line; false when it misses the ball around the egg, else it is outside beyond *reach. */
+static bool line_begin(OvusLine *l, const Shape *shape, const LocalRay *ray, double *reach)
+{
+    const OvusParams *o = &shape->u.ovus;
+    double speed2 = v3_len2(ray->d), middle = 0.5 * o->top, half = o->bottom + middle;
+    double r = ovus_radius(o);
+    l->ovus = o;
+    l->ray = ray;
+    l->speed = sqrt(speed2);
+    l->base = v3_dot(v3_sub(v3(0, middle, 0), ray->o), ray->d) / speed2;
+    l->f = v3_mad(ray->o, l->base, ray->d);
+    l->e = v3_scale(ray->d, 1 / l->speed);
+    double off = l->f.x * l->f.x + l->f.z * l->f.z + (l->f.y - middle) * (l->f.y - middle);
+    double room = (r * r + half * half) * (1 + 0x1p-40) - off;
+    *reach = sqrt(num_max(room, 0));
+    return room > 0;
+}
+
+static LeafHit hit_at(const Shape *shape, const OvusLine *l, double s, bool is_entry)
+{
+    OvusPart part;
+    V3 n = ovus_normal(l->ovus, v3_mad(l->f, s, l->e), &part);
+    double t = l->base + s / l->speed;
+    double off = v3_sum_abs(local_error(l->ray, t)) + PLACE_EPS * ovus_size(shape);
+    double error = off / fabs(v3_dot(n, l->ray->d)) + 4 * EPS_DOUBLE * (fabs(l->base) + fabs(t));
+    return (LeafHit){t, error, 0, is_entry ? 1 : -1, true};
+}
+
 static void ovus_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
 {
-    OvusLine l = {.ovus = &shape->u.ovus};
-    double speed2 = v3_len2(ray->d), speed = sqrt(speed2), ends[2];
-    double middle = 0.5 * l.ovus->top, half = l.ovus->bottom + middle;
-    double r = ovus_radius(l.ovus);
-    double base = v3_dot(v3_sub(v3(0, middle, 0), ray->o), ray->d) / speed2;
+    OvusLine l;
+    double reach, ends[2], precision = 2 * EPS_DOUBLE * ovus_size(shape);
     out->count = 0;
     out->is_inside_before = false;
-    l.f = v3_mad(ray->o, base, ray->d);
-    l.e = v3_scale(ray->d, 1 / speed);
-    double size = ovus_size(shape), off_axis = l.f.x * l.f.x + l.f.z * l.f.z;
-    double room =
-        (r * r + half * half) * (1 + 0x1p-40) - off_axis - (l.f.y - middle) * (l.f.y - middle);
-    if (!(room > 0))
+    if (!line_begin(&l, shape, ray, &reach) ||
+        !convex_line_cross(ovus_distance, &l, -reach, reach, precision, &ends[0], &ends[1]))
         return;
-    double reach = sqrt(room);
-    if (!convex_line_cross(ovus_distance, &l, -reach, reach, 2 * EPS_DOUBLE * size, &ends[0],
-                           &ends[1]))
-        return;
-    for (int i = 0; i < 2; i++) {
-        OvusPart part;
-        V3 n = ovus_normal(l.ovus, v3_mad(l.f, ends[i], l.e), &part);
-        double t = base + ends[i] / speed;
-        double off = v3_sum_abs(local_error(ray, t)) + PLACE_EPS * size;
-        double error = off / fabs(v3_dot(n, ray->d)) + 4 * EPS_DOUBLE * (fabs(base) + fabs(t));
-        out->at[out->count++] = (LeafHit){t, error, 0, i ? -1 : 1, true};
-    }
+    out->at[0] = hit_at(shape, &l, ends[0], true);
+    out->at[1] = hit_at(shape, &l, ends[1], false);
+    out->count = 2;
+}
+
+static bool ovus_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Crossing *out)
+{
+    (void)scratch;
+    LocalRay local;
+    OvusLine l;
+    double reach, s, precision = 2 * EPS_DOUBLE * ovus_size(shape);
+    bool is_entry;
+    local_ray(shape, ray, &local);
+    if (!line_begin(&l, shape, &local, &reach))
+        return false;
+    double lo = num_max(-reach, (ray->tmin - l.base) * l.speed);
+    double hi = num_min(reach, (ray->tmax - l.base) * l.speed);
+    if (!(lo < hi) ||
+        !convex_line_first(ovus_distance, &l, lo, hi, reach, precision, &s, &is_entry))
+        return false;
+    LeafHit hit = hit_at(shape, &l, s, is_entry);
+    crossing_fill(shape, &hit, out);
+    return hit.t > ray->tmin && hit.t < ray->tmax;
 }
 
 static void ovus_point(const Shape *shape, const Crossing *crossing, V3 p, LocalPoint *out)
@@ -159,6 +193,7 @@ static V3 ovus_farthest(const Shape *shape, V3 n)
 }
 
 const ShapeOps ovus_ops = {.hits = ovus_hits,
+                           .closest = ovus_closest,
                            .point = ovus_point,
                            .uv = ovus_uv,
                            .is_inside = ovus_is_inside,

@@ -122,6 +122,15 @@ static int span_roots(const SpanWalk *w, const CurveSpan *span, double *out, boo
     return bernstein_roots(side, degree, out);
 }
 
+/* Does a span cross the line an odd number of times? */
+static bool span_crosses(const SpanWalk *w, const CurveSpan *span)
+{
+    int n = w->prism->form.degree;
+    double first = w->a * span->a[0] + w->b * span->b[0] + w->c;
+    double last = w->a * span->a[n] + w->b * span->b[n] + w->c;
+    return (first < 0) != (last < 0);
+}
+
 /* Return whether a point of the curves' plane is inside. */
 static bool is_in_curves(const PrismData *prism, double x, double z)
 {
@@ -149,6 +158,7 @@ typedef struct PrismLine {
     V3 f, e;            /* e unit */
     double base, speed; /* t = base + s / speed */
     double in, out;     /* s between the planes of the caps */
+    double near, far;   /* s where crossings are wanted */
     double pole;        /* s where the line's place in the curves' plane is at infinity */
 } PrismLine;
 
@@ -226,13 +236,33 @@ static void line_begin(PrismLine *l, const PrismData *prism, const LocalRay *ray
     l->e = v3_scale(ray->d, 1 / l->speed);
 }
 
-/* Push the places where the line meets the walls: t is s, v tells which way the curve goes. */
-static void push_walls(const PrismLine *l, ShapeScratch *scratch)
+/* Where a span of a straight sweep is along the line: -1 before what is wanted, 1 beyond it, 0
+ * maybe in it. */
+static int place_along(const PrismLine *l, const CurveSpan *span)
+{
+    double lo = INFINITY, hi = -INFINITY, across = l->e.x * l->e.x + l->e.z * l->e.z;
+    if (l->prism->form.is_conic || across == 0)
+        return 0;
+    for (int i = 0; i <= l->prism->form.degree; i++) {
+        double along = (span->a[i] - l->f.x) * l->e.x + (span->b[i] - l->f.z) * l->e.z;
+        lo = num_min(lo, along);
+        hi = num_max(hi, along);
+    }
+    double room = 0x1p-40 * l->prism->reach;
+    return hi + room < num_max(l->in, l->near) * across   ? -1
+           : lo - room > num_min(l->out, l->far) * across ? 1
+                                                          : 0;
+}
+
+/* Push the places where the line meets the walls: t is s, v tells which way the curve goes. Returns
+ * whether an odd number before what is wanted were left out. */
+static bool push_walls(const PrismLine *l, ShapeScratch *scratch)
 {
     const PrismForm *form = &l->prism->form;
     SpanWalk walk;
     const CurveSpan *span;
     Crossing c = {.change = 0};
+    bool is_odd = false;
     if (form->is_conic) {
         V3 n = v3_cross(l->e, l->f);
         if (v3_len2(n) == 0)
@@ -245,6 +275,11 @@ static void push_walls(const PrismLine *l, ShapeScratch *scratch)
     while ((span = walk_next(&walk, &c.part))) {
         double roots[SPLINE_POINTS_MAX];
         bool is_rising;
+        int place = place_along(l, span);
+        if (place < 0)
+            is_odd ^= span_crosses(&walk, span);
+        if (place)
+            continue;
         int count = span_roots(&walk, span, roots, &is_rising);
         for (int i = 0; i < count; i++, is_rising = !is_rising) {
             c.u = roots[i];
@@ -254,6 +289,7 @@ static void push_walls(const PrismLine *l, ShapeScratch *scratch)
             scratch_push(scratch, &c);
         }
     }
+    return is_odd;
 }
 
 /* Finish a crossing of a wall that push_walls has made. */
@@ -321,10 +357,12 @@ static bool prism_list(const Shape *shape, const Line *line, ShapeScratch *scrat
     if (!cut_caps(&l))
         return false;
     int base = scratch->count;
-    push_walls(&l, scratch);
+    l.near = (line->near - l.base) * l.speed;
+    l.far = (line->far - l.base) * l.speed;
+    bool is_inside = push_walls(&l, scratch);
     int count = scratch->count - base;
     crossings_sort(scratch->items + base, count);
-    bool is_inside = starts_inside(&l, scratch->items + base, count);
+    is_inside ^= starts_inside(&l, scratch->items + base, count);
     Crossing cap = cap_crossing(shape, &l, true);
     bool has_cap = is_inside;
     int written = base;

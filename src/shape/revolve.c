@@ -57,45 +57,65 @@ Shape *revolve_place(Arena *arena, Shape *shape, RevolveData *data)
 
 /* --- a line and a piece -------------------------------------------------------------------- */
 
-double revolve_u_at(const RevolveData *data, const RevolvePiece *piece, double y)
+/* Return u where a piece is at height y, of which it is on both sides. */
+static double u_at(const RevolveData *data, const RevolvePiece *piece, double y)
 {
+    if (data->is_square)
+        return num_max(0, num_min(1, (y - piece->y[0]) / (piece->y[1] - piece->y[0])));
     double over[4], roots[4];
-    int degree = data->is_square ? 1 : data->degree;
-    for (int i = 0; i <= degree; i++)
+    for (int i = 0; i <= data->degree; i++)
         over[i] = piece->y[i] - y;
-    return bernstein_roots(over, degree, roots) ? roots[0] : 0.5;
+    if (bernstein_roots(over, data->degree, roots))
+        return roots[0];
+    return fabs(over[0]) < fabs(over[data->degree]) ? 0 : 1; /* rounded to beyond an end */
 }
 
-bool revolve_cut(const RevolveData *data, const RevolvePiece *piece, const RevolveLine *l,
-                 RevolvePart *out)
+/* Return s where a piece ends. */
+static double end_s(const RevolveData *data, const RevolvePiece *piece, const RevolveLine *l,
+                    int end)
 {
-    double y[2] = {piece->y[0], piece->y[data->is_square ? 1 : data->degree]};
-    double width = l->hi - l->lo;
-    *out = (RevolvePart){.from = 0, .to = 1};
-    if (l->e.y == 0) {
-        bool is_below[2] = {y[0] - l->f.y < 0, y[1] - l->f.y < 0};
-        if (is_below[0] == is_below[1])
-            return false;
-        out->from = out->to = revolve_u_at(data, piece, l->f.y);
-        out->s[0] = is_below[0] ? l->lo : l->hi;
-        out->s[1] = is_below[0] ? l->hi : l->lo;
-        out->is_tiny = out->is_cut[0] = out->is_cut[1] = true;
-        return true;
-    }
-    for (int end = 0; end < 2; end++)
-        out->s[end] = (y[end] - l->f.y) / l->e.y;
-    if (num_max(out->s[0], out->s[1]) < l->lo || num_min(out->s[0], out->s[1]) > l->hi)
+    return (piece->y[end ? (data->is_square ? 1 : data->degree) : 0] - l->f.y) / l->e.y;
+}
+
+/* Cut a level line's piece, which it is on both sides of, if it is. */
+static bool cut_level(const RevolveData *data, const RevolvePiece *piece, const RevolveLine *l,
+                      RevolvePart *out)
+{
+    double y0 = piece->y[0], y1 = piece->y[data->is_square ? 1 : data->degree];
+    bool is_below[2] = {y0 - l->f.y < 0, y1 - l->f.y < 0};
+    if (is_below[0] == is_below[1])
         return false;
+    out->from = out->to = u_at(data, piece, l->f.y);
+    out->s[0] = is_below[0] ? l->near : l->far;
+    out->s[1] = is_below[0] ? l->far : l->near;
+    out->is_tiny = out->is_cut[0] = out->is_cut[1] = true;
+    return true;
+}
+
+/* Cut a piece to where crossings are wanted; false when that is nothing. */
+static bool cut_piece(const RevolveData *data, const RevolvePiece *piece, const RevolveLine *l,
+                      RevolvePart *out)
+{
+    *out = (RevolvePart){.from = 0, .to = 1};
+    if (l->e.y == 0)
+        return cut_level(data, piece, l, out);
+    for (int end = 0; end < 2; end++)
+        out->s[end] = end_s(data, piece, l, end);
+    if (num_max(out->s[0], out->s[1]) < l->near || num_min(out->s[0], out->s[1]) > l->far)
+        return false;
+    /* Where the line is further out than all pieces, a little more does no harm, and cutting it off
+     * costs more. */
+    double room = data->is_square ? 0 : 2 * (l->hi - l->lo);
+    double lo = l->near - (l->near > l->lo ? 0 : room), hi = l->far + (l->far < l->hi ? 0 : room);
     for (int end = 0; end < 2; end++) {
-        /* What lies a little beyond does no harm. */
         double s = out->s[end];
-        if (s >= l->lo - 4 * width && s <= l->hi + 4 * width)
+        if (s >= lo && s <= hi)
             continue;
-        out->s[end] = s < l->lo ? l->lo : l->hi;
+        out->s[end] = s < lo ? l->near : l->far;
         out->is_cut[end] = true;
-        *(end ? &out->to : &out->from) = revolve_u_at(data, piece, l->f.y + out->s[end] * l->e.y);
+        *(end ? &out->to : &out->from) = u_at(data, piece, l->f.y + out->s[end] * l->e.y);
     }
-    double size = num_max(fabs(y[0]), fabs(y[1]));
+    double size = num_max(fabs(data->y_lo), fabs(data->y_hi));
     out->is_tiny = fabs(out->s[1] - out->s[0]) * fabs(l->e.y) <= MARGIN * size;
     return true;
 }
@@ -103,7 +123,8 @@ bool revolve_cut(const RevolveData *data, const RevolvePiece *piece, const Revol
 /* --- lines --------------------------------------------------------------------------------- */
 
 /* Set up a line; false when it misses the cylinder around the profile. */
-static bool line_begin(RevolveLine *l, const RevolveData *data, const LocalRay *ray)
+static bool line_begin(RevolveLine *l, const RevolveData *data, const LocalRay *ray,
+                       const Line *line)
 {
     double speed2 = v3_len2(ray->d), middle = 0.5 * (data->y_lo + data->y_hi);
     l->base = v3_dot(v3_sub(v3(0, middle, 0), ray->o), ray->d) / speed2;
@@ -124,18 +145,23 @@ static bool line_begin(RevolveLine *l, const RevolveData *data, const LocalRay *
     double across = l->e.x * l->e.x + l->e.z * l->e.z, r = data->r_max * (1 + MARGIN);
     double cross = l->f.x * l->e.z - l->f.z * l->e.x;
     double room = r * r * across - cross * cross;
-    if (!(room > 0))
-        return across == 0 && l->f.x * l->f.x + l->f.z * l->f.z < r * r;
-    double nearest = -(l->f.x * l->e.x + l->f.z * l->e.z) / across, half = sqrt(room) / across;
-    l->lo = num_max(l->lo, nearest - half);
-    l->hi = num_min(l->hi, nearest + half);
-    return l->lo < l->hi;
+    if (room > 0) {
+        double nearest = -(l->f.x * l->e.x + l->f.z * l->e.z) / across;
+        double half = sqrt(room) / across;
+        l->lo = num_max(l->lo, nearest - half);
+        l->hi = num_min(l->hi, nearest + half);
+    } else if (across != 0 || l->f.x * l->f.x + l->f.z * l->f.z >= r * r) {
+        return false;
+    }
+    l->near = num_max(l->lo, (line->near - l->base) * l->speed);
+    l->far = num_min(l->hi, (line->far - l->base) * l->speed);
+    return l->near < l->far;
 }
 
 /* Can the line cross a piece in a box of radii and heights? */
 static bool is_near(const RevolveLine *l, const Bound *box, double size)
 {
-    double lo = l->lo, hi = l->hi, pad = 0x1p-45 * size;
+    double lo = l->lo, hi = l->far, pad = 0x1p-45 * size;
     if (l->e.y != 0) {
         double a = (box->lo.y - pad - l->f.y) / l->e.y, b = (box->hi.y + pad - l->f.y) / l->e.y;
         lo = num_max(lo, num_min(a, b));
@@ -158,43 +184,81 @@ static bool is_near(const RevolveLine *l, const Bound *box, double size)
     return x * x + z * z <= outer * outer;
 }
 
-static void push_piece(const RevolveData *data, uint32_t number, const RevolveLine *l,
+/* Is the line, where a piece ends, less far out than that? */
+static bool is_within_end(const RevolveData *data, const RevolvePiece *piece, const RevolveLine *l,
+                          int end)
+{
+    double s = end_s(data, piece, l, end);
+    if (!(s > l->lo && s < l->hi))
+        return false;
+    double x = l->f.x + l->e.x * s, z = l->f.z + l->e.z * s;
+    double r = piece->r[end ? data->degree : 0];
+    return x * x + z * z - (data->is_square ? r : r * r) < 0;
+}
+
+/* Push the crossings of a piece that are wanted; returns whether an odd number lies before. */
+static bool push_piece(const RevolveData *data, uint32_t number, const RevolveLine *l,
                        ShapeScratch *scratch)
 {
     RevolveRoot roots[REVOLVE_ROOTS_MAX];
-    bool is_rising;
+    RevolvePart part;
     const RevolvePiece *piece = &data->pieces[number];
-    int count = data->is_square ? sor_roots(data, piece, l, roots, &is_rising)
-                                : lathe_roots(data, piece, l, roots, &is_rising);
+    bool is_within[2], has_before = l->near > l->lo;
+    if (!cut_piece(data, piece, l, &part)) {
+        double first = end_s(data, piece, l, 0);
+        return has_before && l->e.y != 0 && first < l->near &&
+               is_within_end(data, piece, l, 0) != is_within_end(data, piece, l, 1);
+    }
+    int count = data->is_square ? sor_roots(data, piece, &part, l, roots, is_within)
+                                : lathe_roots(data, piece, &part, l, roots, is_within);
+    bool is_rising = is_within[0];
     for (int i = 0; i < count; i++, is_rising = !is_rising) {
         /* v: whether the line goes along the piece's normal. */
         double along = is_rising == (l->e.y >= 0) ? 1 : -1;
         Crossing c = {.t = roots[i].s, .part = number, .u = roots[i].u, .v = along};
         scratch_push(scratch, &c);
     }
+    int low = part.s[0] <= part.s[1] ? 0 : 1;
+    if (!has_before || !part.is_cut[low])
+        return false;
+    return is_within[low] != (l->e.y != 0 && is_within_end(data, piece, l, low));
 }
 
-static void push_pieces(const RevolveData *data, const RevolveLine *l, ShapeScratch *scratch)
+/* Push the crossings of all pieces; returns whether an odd number lies before what is wanted. */
+static bool push_pieces(const RevolveData *data, RevolveLine *l, bool is_first_only,
+                        ShapeScratch *scratch)
 {
     uint32_t stack[BOX_TREE_DEPTH_MAX], count = 1;
     double size = data->r_max + num_max(fabs(data->y_lo), fabs(data->y_hi));
+    bool is_odd = false;
     stack[0] = 0;
     while (count) {
         const BoxNode *node = &data->tree.nodes[stack[--count]];
         if (!is_near(l, &node->box, size))
             continue;
-        for (uint32_t i = 0; i < node->count; i++)
-            push_piece(data, data->tree.items[node->first + i], l, scratch);
+        for (uint32_t i = 0; i < node->count; i++) {
+            int from = scratch->count;
+            is_odd ^= push_piece(data, data->tree.items[node->first + i], l, scratch);
+            for (int k = from; is_first_only && k < scratch->count; k++)
+                l->far = num_max(l->near, num_min(l->far, scratch->items[k].t));
+        }
         if (!node->count) {
-            stack[count++] = node->first + 1;
-            stack[count++] = node->first;
+            /* First the one that the line comes to first, as far as heights tell. */
+            const Bound *a = &data->tree.nodes[node->first].box, *b = a;
+            b = &data->tree.nodes[node->first + 1].box;
+            bool is_swapped = (a->lo.y + a->hi.y - b->lo.y - b->hi.y) * l->e.y > 0;
+            stack[count++] = node->first + !is_swapped;
+            stack[count++] = node->first + is_swapped;
         }
     }
+    return is_odd;
 }
 
-/* Push the lids that are crossed; of several at one height, one if that is an odd number. */
-static void push_lids(const RevolveData *data, const RevolveLine *l, ShapeScratch *scratch)
+/* Push the lids that are crossed; of several at one height, one if that is an odd number.  Returns
+ * whether an odd number lies before what is wanted. */
+static bool push_lids(const RevolveData *data, const RevolveLine *l, ShapeScratch *scratch)
 {
+    bool is_odd = false;
     for (uint32_t i = 0; l->e.y != 0 && i < data->lid_count;) {
         const RevolveLid *lid = &data->lids[i];
         double s = (lid->y - l->f.y) / l->e.y;
@@ -205,9 +269,12 @@ static void push_lids(const RevolveData *data, const RevolveLine *l, ShapeScratc
             double r = data->lids[i].r, square = data->is_square ? r : r * r;
             is_crossed ^= x * x + z * z - square < 0;
         }
-        if (is_crossed)
+        if (is_crossed && s < l->near)
+            is_odd = !is_odd;
+        else if (is_crossed)
             scratch_push(scratch, &c);
     }
+    return is_odd;
 }
 
 /* Return the normal of a piece at u and a point of it, unit unless there is none. */
@@ -255,15 +322,16 @@ bool revolve_list(const Shape *shape, const Line *line, ShapeScratch *scratch)
     LocalRay ray;
     RevolveLine l;
     local_ray(shape, line->ray, &ray);
-    if (!line_begin(&l, shape->u.revolve, &ray))
+    if (!line_begin(&l, shape->u.revolve, &ray, line))
         return false;
     int base = scratch->count;
-    push_pieces(shape->u.revolve, &l, scratch);
-    push_lids(shape->u.revolve, &l, scratch);
+    bool is_inside = push_pieces(shape->u.revolve, &l, line->is_first_only, scratch);
+    is_inside ^= push_lids(shape->u.revolve, &l, scratch);
     crossings_sort(scratch->items + base, scratch->count - base);
-    for (int i = base; i < scratch->count; i++)
-        finish(shape, &l, &ray, line, (i - base) % 2 == 0, &scratch->items[i]);
-    return false;
+    bool is_entry = !is_inside;
+    for (int i = base; i < scratch->count; i++, is_entry = !is_entry)
+        finish(shape, &l, &ray, line, is_entry, &scratch->items[i]);
+    return is_inside;
 }
 
 /* --- points -------------------------------------------------------------------------------- */
@@ -334,7 +402,7 @@ bool revolve_is_inside(const Shape *shape, V3 p)
             const RevolvePiece *piece = &data->pieces[data->tree.items[node->first + i]];
             if ((piece->y[0] - p.y < 0) == (piece->y[last] - p.y < 0))
                 continue;
-            double u = revolve_u_at(data, piece, p.y);
+            double u = u_at(data, piece, p.y);
             double at = bernstein_at(piece->r, data->degree, u, &ignored);
             is_inside ^= (data->is_square ? at : at * at) > square;
         }

@@ -38,6 +38,7 @@ typedef struct RevolveLine {
     V3 f, e; /* e unit */
     double base, speed; /* t = base + s / speed */
     double lo, hi;      /* s: beyond, and at these, the line is further out than any piece */
+    double near, far;   /* the part of lo to hi where crossings are wanted */
 } RevolveLine;
 
 /* A place on a piece where a line crosses it. */
@@ -47,24 +48,20 @@ typedef struct RevolveRoot {
 
 enum { REVOLVE_ROOTS_MAX = 6 };
 
-/* Find where a line crosses a piece; *is_rising: whether, along the piece, the first is where the
- * line comes to be further out than the piece.  Returns how many; they take turns. */
-int lathe_roots(const RevolveData *data, const RevolvePiece *piece, const RevolveLine *l,
-                RevolveRoot *out, bool *is_rising);
-int sor_roots(const RevolveData *data, const RevolvePiece *piece, const RevolveLine *l,
-              RevolveRoot *out, bool *is_rising);
-
-/* The part of a piece that a line can cross, seen as [0, 1]. */
+/* The part of a piece on which crossings are wanted, seen as [0, 1]. */
 typedef struct RevolvePart {
     double from, to; /* of the piece */
     double s[2];     /* at its ends */
     bool is_tiny;    /* it is so short that nothing but s changes along it */
-    bool is_cut[2];  /* it ends where the line leaves the reach of all pieces */
+    bool is_cut[2];  /* it ends before the piece does */
 } RevolvePart;
 
-/* Cut a piece to what a line can cross; false when that is nothing. */
-bool revolve_cut(const RevolveData *data, const RevolvePiece *piece, const RevolveLine *l,
-                 RevolvePart *out);
+/* Find where a line crosses a part of a piece; is_within: whether, at its ends, the line is less
+ * far out than the piece.  Returns how many. */
+int lathe_roots(const RevolveData *data, const RevolvePiece *piece, const RevolvePart *part,
+                const RevolveLine *l, RevolveRoot *out, bool is_within[2]);
+int sor_roots(const RevolveData *data, const RevolvePiece *piece, const RevolvePart *part,
+              const RevolveLine *l, RevolveRoot *out, bool is_within[2]);
 
 /* Return u where a piece is at height y, of which it is on both sides. */
 double revolve_u_at(const RevolveData *data, const RevolvePiece *piece, double y);

@@ -54,9 +54,9 @@ static bool hits_closest(const Shape *shape, const Ray *ray, Crossing *out)
 
 /* Start the scratch afresh and list what crosses a part of the line. */
 static bool list_part(const Shape *shape, const Ray *ray, double near, double far,
-                      ShapeScratch *scratch)
+                      bool is_first_only, ShapeScratch *scratch)
 {
-    Line line = {ray, v3(1 / ray->d.x, 1 / ray->d.y, 1 / ray->d.z), near, far};
+    Line line = {ray, v3(1 / ray->d.x, 1 / ray->d.y, 1 / ray->d.z), near, far, is_first_only};
     scratch->count = 0;
     scratch->state_count = 0;
     scratch->is_overflown = false;
@@ -65,7 +65,8 @@ static bool list_part(const Shape *shape, const Ray *ray, double near, double fa
 
 static bool list_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Crossing *out)
 {
-    list_part(shape, ray, ray->tmin, ray->tmax, scratch);
+    bool is_leaf = shape->kind < SHAPE_UNION && shape->clip_count == 0;
+    list_part(shape, ray, ray->tmin, ray->tmax, is_leaf, scratch);
     for (int i = 0; i < scratch->count; i++) {
         const Crossing *c = &scratch->items[i];
         if (c->is_visible && c->t > ray->tmin && c->t < ray->tmax) {
@@ -82,7 +83,7 @@ bool shape_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Cr
     if (!ops || shape->clip_count || !(ops->hits || ops->closest))
         return list_closest(shape, ray, scratch, out);
     bool is_hit =
-        ops->hits ? hits_closest(shape, ray, out) : ops->closest(shape, ray, scratch, out);
+        ops->closest ? ops->closest(shape, ray, scratch, out) : hits_closest(shape, ray, out);
     if (is_hit && shape->is_inverted)
         crossing_invert(out);
     return is_hit;
@@ -100,7 +101,7 @@ bool shape_is_met(const Shape *shape, const Ray *ray, ShapeScratch *scratch)
 
 void shape_crossings(const Shape *shape, const Ray *ray, ShapeScratch *scratch, CrossList *out)
 {
-    out->is_inside_before = list_part(shape, ray, -INFINITY, INFINITY, scratch);
+    out->is_inside_before = list_part(shape, ray, -INFINITY, INFINITY, false, scratch);
     out->items = scratch->items;
     out->count = scratch->count;
     out->is_overflown = scratch->is_overflown;

@@ -169,6 +169,7 @@ struct Line {
     const Ray *ray;
     V3 inverse; /* of the direction */
     double near, far;
+    bool is_first_only; /* what lies beyond the first visible crossing may be told wrong, too */
 };
 
 /* Is what happens at t wanted? */

@@ -41,29 +41,28 @@ Shape *shape_sor(Arena *arena, const V2 *points, int count, bool is_open)
     return revolve_place(arena, shape, data);
 }
 
-int sor_roots(const RevolveData *data, const RevolvePiece *piece, const RevolveLine *l,
-              RevolveRoot *out, bool *is_rising)
+int sor_roots(const RevolveData *data, const RevolvePiece *piece, const RevolvePart *part,
+              const RevolveLine *l, RevolveRoot *out, bool is_within[2])
 {
-    RevolvePart part;
-    if (!revolve_cut(data, piece, l, &part))
-        return 0;
+    (void)data;
     double r[4], at[3];
-    if (part.from > 0 || part.to < 1)
-        bernstein_part(piece->r, 3, part.from, part.to, r);
+    if (part->from > 0 || part->to < 1)
+        bernstein_part(piece->r, 3, part->from, part->to, r);
     else
         for (int i = 0; i < 4; i++)
             r[i] = piece->r[i];
-    double a = part.s[0], b = part.s[1];
+    double a = part->s[0], b = part->s[1];
     double x0 = l->f.x + l->e.x * a, z0 = l->f.z + l->e.z * a;
     double x1 = l->f.x + l->e.x * b, z1 = l->f.z + l->e.z * b;
     double first = x0 * x0 + z0 * z0, last = x1 * x1 + z1 * z1, middle = x0 * x1 + z0 * z1;
     double g[4] = {first - r[0], (first + 2 * middle) / 3 - r[1], (2 * middle + last) / 3 - r[2],
                    last - r[3]};
-    *is_rising = g[0] < 0;
+    is_within[0] = g[0] < 0;
+    is_within[1] = g[3] < 0;
     int count = bernstein_roots(g, 3, at);
     for (int i = 0; i < count; i++) {
         out[i].s = a + (b - a) * at[i];
-        out[i].u = part.from + (part.to - part.from) * at[i];
+        out[i].u = part->from + (part->to - part->from) * at[i];
     }
     return count;
 }

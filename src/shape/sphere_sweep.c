@@ -68,6 +68,8 @@ typedef struct SweepLine {
     V3 f, e, p, q;      /* orthonormal: e along the line */
     V3 inverse;         /* of e */
     double base, speed; /* t = base + s / speed */
+    double near, far;   /* s where crossings are wanted */
+    bool is_first_only; /* of these */
 } SweepLine;
 
 /* A span as a line sees it. */
@@ -93,10 +95,7 @@ static void view_span(const SweepData *data, const SweepSpan *span, const SweepL
     bernstein_add_product(span->r, span->r, n, 1, v->d);
     bernstein_add_product(p, p, n, -1, v->d);
     bernstein_add_product(q, q, n, -1, v->d);
-    if (n > 1) {
-        bernstein_center(v->s, n, &v->s_center);
-        bernstein_center(v->d, 2 * n, &v->d_center);
-    } else {
+    if (n == 1) {
         double rp = span->r[0] * p[1] - span->r[1] * p[0];
         double rq = span->r[0] * q[1] - span->r[1] * q[0], pq = p[0] * q[1] - p[1] * q[0];
         v->discriminant = rp * rp + rq * rq - pq * pq;
@@ -279,23 +278,15 @@ static bool is_proved(const SpanView *v, SweepEnd end, double from, double to)
     return true;
 }
 
-/* Find both ends of the stretch [from, to]. */
-static void stretch_ends(const SpanView *v, double from, double to, SweepEnd out[2])
+/* Find an end of the stretch that the samples are spread over. */
+static SweepEnd curved_end(const SpanView *v, double way, const Samples *few)
 {
-    if (v->degree == 1) {
-        out[0] = straight_end(v, -1, from, to);
-        out[1] = straight_end(v, 1, from, to);
-        return;
-    }
-    Samples samples;
-    take_samples(v, from, to, SAMPLES, &samples);
-    out[0] = sampled_end(v, -1, &samples);
-    out[1] = sampled_end(v, 1, &samples);
-    if (is_proved(v, out[0], from, to) && is_proved(v, out[1], from, to))
-        return;
-    take_samples(v, from, to, MANY_SAMPLES, &samples);
-    out[0] = sampled_end(v, -1, &samples);
-    out[1] = sampled_end(v, 1, &samples);
+    SweepEnd end = sampled_end(v, way, few);
+    if (is_proved(v, end, few->from, few->to))
+        return end;
+    Samples many;
+    take_samples(v, few->from, few->to, MANY_SAMPLES, &many);
+    return sampled_end(v, way, &many);
 }
 
 static V3 center_at(const SweepData *data, const SweepSpan *span, double u)
@@ -315,8 +306,32 @@ static double exact_end(const SweepData *data, const SweepSpan *span, const Swee
     return v3_dot(c, l->e) + way * sqrt(num_max(0, (r - off) * (r + off)));
 }
 
-/* Push the pieces of the line inside the balls of a span; t is s, child tells the order at one
- * place: entries first. */
+/* Push the piece of the line inside the balls of a stretch; t is s, child tells the order at one
+ * place: entries first.  If only the first crossing is wanted and that is where the piece begins,
+ * its end is not looked for. */
+static void push_stretch(const SweepData *data, uint32_t number, const SweepLine *l,
+                         const SpanView *v, double from, double to, ShapeScratch *scratch)
+{
+    const SweepSpan *span = &data->spans[number];
+    Samples samples;
+    if (v->degree > 1)
+        take_samples(v, from, to, SAMPLES, &samples);
+    Crossing c = {.part = number};
+    for (int end = 0; end < 2; end++) {
+        double way = end ? 1 : -1;
+        if (end == 0 || !l->is_first_only || c.t <= l->near) {
+            SweepEnd place =
+                v->degree > 1 ? curved_end(v, way, &samples) : straight_end(v, way, from, to);
+            c.t = exact_end(data, span, l, way, place.u);
+            c.u = place.u;
+        }
+        c.child = (uint32_t)end;
+        c.change = end ? -1 : 1;
+        scratch_push(scratch, &c);
+    }
+}
+
+/* Push the pieces of the line inside the balls of a span. */
 static void push_span(const SweepData *data, uint32_t number, const SweepLine *l,
                       ShapeScratch *scratch)
 {
@@ -326,35 +341,30 @@ static void push_span(const SweepData *data, uint32_t number, const SweepLine *l
     double at[BERNSTEIN_DEGREE_MAX + 2], roots[BERNSTEIN_DEGREE_MAX];
     int count = v.degree == 1 ? bernstein_quadratic(v.d, v.discriminant, roots)
                               : bernstein_roots(v.d, 2 * v.degree, roots);
-    bool is_out = v.d[0] < 0;
     at[0] = 0;
     for (int i = 0; i < count; i++)
         at[i + 1] = roots[i];
     at[count + 1] = 1;
-    for (int i = is_out; i <= count; i += 2) {
-        double from = at[i], to = at[i + 1];
+    if (count == 0 && v.d[0] < 0)
+        return;
+    if (v.degree > 1) {
+        bernstein_center(v.s, v.degree, &v.s_center);
+        bernstein_center(v.d, 2 * v.degree, &v.d_center);
+    }
+    for (int i = v.d[0] < 0; i <= count; i += 2) {
         /* Between balls of positive and negative radius D is negative. */
-        if (bernstein_value(span->r, v.degree, 0.5 * (from + to)) < 0)
-            continue;
-        SweepEnd ends[2];
-        stretch_ends(&v, from, to, ends);
-        for (int end = 0; end < 2; end++) {
-            Crossing c = {.t = exact_end(data, span, l, end ? 1 : -1, ends[end].u),
-                          .part = number,
-                          .child = (uint32_t)end,
-                          .change = end ? -1 : 1,
-                          .u = ends[end].u};
-            scratch_push(scratch, &c);
-        }
+        if (bernstein_value(span->r, v.degree, 0.5 * (at[i] + at[i + 1])) >= 0)
+            push_stretch(data, number, l, &v, at[i], at[i + 1], scratch);
     }
 }
 
 /* --- lines --------------------------------------------------------------------------------- */
 
-/* Does the line meet a box?  A line along a side is on it. */
+/* Does the wanted part of the line meet a box?  A line along a side is on it.  Balls that it is not
+ * in there do not count. */
 static bool meets_box(const SweepLine *l, const Bound *box)
 {
-    double near = -INFINITY, far = INFINITY;
+    double near = l->near, far = l->far;
     for (int axis = 0; axis < 3; axis++) {
         double o = v3_at(l->f, axis), inverse = v3_at(l->inverse, axis);
         double a = (v3_at(box->lo, axis) - o) * inverse, b = (v3_at(box->hi, axis) - o) * inverse;
@@ -362,10 +372,25 @@ static bool meets_box(const SweepLine *l, const Bound *box)
         near = first > near ? first : near;
         far = last < far ? last : far;
     }
-    return !(near > far + 0x1p-44 * (fabs(near) + fabs(far)));
+    return !(near - 0x1p-44 * fabs(near) > far + 0x1p-44 * fabs(far));
 }
 
-static void push_spans(const SweepData *data, const SweepLine *l, ShapeScratch *scratch)
+/* Note what was pushed from `from` on; false when only the first crossing is looked for, but the
+ * line starts inside, so that all pieces are needed. */
+static bool note_pieces(SweepLine *l, const ShapeScratch *scratch, int from)
+{
+    for (int i = from; l->is_first_only && i + 1 < scratch->count; i += 2) {
+        double in = scratch->items[i].t;
+        if (in <= l->near && scratch->items[i + 1].t > l->near)
+            return false;
+        if (in > l->near)
+            l->far = num_min(l->far, in);
+    }
+    return true;
+}
+
+/* Push the pieces of the line inside the balls of all spans; false as note_pieces. */
+static bool push_spans(const SweepData *data, SweepLine *l, ShapeScratch *scratch)
 {
     uint32_t stack[BOX_TREE_DEPTH_MAX], count = 1;
     stack[0] = 0;
@@ -373,16 +398,25 @@ static void push_spans(const SweepData *data, const SweepLine *l, ShapeScratch *
         const BoxNode *node = &data->tree.nodes[stack[--count]];
         if (!meets_box(l, &node->box))
             continue;
-        for (uint32_t i = 0; i < node->count; i++)
+        for (uint32_t i = 0; i < node->count; i++) {
+            int from = scratch->count;
             push_span(data, data->tree.items[node->first + i], l, scratch);
+            if (!note_pieces(l, scratch, from))
+                return false;
+        }
         if (!node->count) {
-            stack[count++] = node->first + 1;
-            stack[count++] = node->first;
+            /* First the one that the line comes to first. */
+            V3 a = bound_center(data->tree.nodes[node->first].box);
+            V3 b = bound_center(data->tree.nodes[node->first + 1].box);
+            bool is_swapped = v3_dot(v3_sub(a, b), l->e) > 0;
+            stack[count++] = node->first + !is_swapped;
+            stack[count++] = node->first + is_swapped;
         }
     }
+    return true;
 }
 
-static void line_begin(SweepLine *l, const SweepData *data, const LocalRay *ray)
+static void line_begin(SweepLine *l, const SweepData *data, const LocalRay *ray, const Line *line)
 {
     double speed2 = v3_len2(ray->d);
     l->base = v3_dot(v3_sub(bound_center(data->box), ray->o), ray->d) / speed2;
@@ -391,6 +425,9 @@ static void line_begin(SweepLine *l, const SweepData *data, const LocalRay *ray)
     l->e = v3_scale(ray->d, 1 / l->speed);
     v3_frame(l->e, &l->p, &l->q);
     l->inverse = v3(1 / l->e.x, 1 / l->e.y, 1 / l->e.z);
+    l->near = (line->near - l->base) * l->speed;
+    l->far = (line->far - l->base) * l->speed;
+    l->is_first_only = line->is_first_only;
 }
 
 /* Finish a crossing that push_span has made. */
@@ -418,9 +455,14 @@ static bool sweep_list(const Shape *shape, const Line *line, ShapeScratch *scrat
     LocalRay ray;
     SweepLine l;
     local_ray(shape, line->ray, &ray);
-    line_begin(&l, shape->u.sweep, &ray);
+    line_begin(&l, shape->u.sweep, &ray, line);
     int base = scratch->count, written = base, depth = 0;
-    push_spans(shape->u.sweep, &l, scratch);
+    if (!push_spans(shape->u.sweep, &l, scratch)) {
+        scratch->count = base;
+        line_begin(&l, shape->u.sweep, &ray, line);
+        l.is_first_only = false;
+        push_spans(shape->u.sweep, &l, scratch);
+    }
     crossings_sort(scratch->items + base, scratch->count - base);
     for (int i = base; i < scratch->count; i++) {
         Crossing c = scratch->items[i];

@@ -12,6 +12,33 @@ typedef int (*InsideFn)(const void *form, V3 p);
 /* How far crossings may be off, relative to the shape's size. */
 #define SOLID_TOLERANCE 1e-9
 
+/* What is found from a point between crossings is the next one of the list. */
+static inline void check_closest(const Shape *shape, Ray ray, const Crossing *items, int count,
+                                 double size)
+{
+    for (int i = 0; i < count; i++) {
+        double before = i ? items[i - 1].t : items[i].t - size;
+        if (items[i].t - before < 1e-6 * size)
+            continue;
+        ray.tmin = 0.5 * (before + items[i].t);
+        ray.tmax = i % 3 ? INFINITY : 0.5 * (items[i].t + items[i].t + size);
+        Crossing c;
+        int next = i;
+        while (next < count && !items[next].is_visible)
+            next++;
+        bool is_hit = shape_closest(shape, &ray, scratch, &c);
+        if (is_hit != (next < count && items[next].t < ray.tmax))
+            fail_msg("from %.17g on a crossing is %s", ray.tmin, is_hit ? "made up" : "lost");
+        if (!is_hit)
+            continue;
+        if (!(fabs(c.t - items[next].t) <= c.t_error + items[next].t_error + 1e-9 * size))
+            fail_msg("the closest is at %.17g, not %.17g", c.t, items[next].t);
+        if (items[next].t_error < 1e-9 * size &&
+            (next + 1 == count || items[next + 1].t - items[next].t > 1e-6 * size))
+            assert_int_equal(c.change, items[next].change);
+    }
+}
+
 /* Check the crossings of one line; returns how many.  Without is_inside, lines may run along
  * walls. */
 static inline int check_line(const Shape *shape, V3 o, V3 d, double size, InsideFn is_inside,
@@ -53,6 +80,8 @@ static inline int check_line(const Shape *shape, V3 o, V3 d, double size, Inside
         }
     }
     assert_int_equal(state, list.is_inside_before);
+    if (is_inside)
+        check_closest(shape, ray, items, count, size);
     return count;
 }
 
