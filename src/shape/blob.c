@@ -164,7 +164,7 @@ static void gather(Sweep *s)
 {
     const BoxTree *tree = &s->blob->tree;
     Ray ray = {s->p, s->d, s->near, s->far};
-    Line line = {&ray, v3(1 / s->d.x, 1 / s->d.y, 1 / s->d.z), s->near, s->far};
+    Line line = {&ray, v3(1 / s->d.x, 1 / s->d.y, 1 / s->d.z), s->near, s->far, false};
     uint32_t stack[BOX_TREE_DEPTH_MAX], depth = 0;
     stack[depth++] = 0;
     while (depth > 0) {

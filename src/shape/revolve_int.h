@@ -63,9 +63,6 @@ int lathe_roots(const RevolveData *data, const RevolvePiece *piece, const Revolv
 int sor_roots(const RevolveData *data, const RevolvePiece *piece, const RevolvePart *part,
               const RevolveLine *l, RevolveRoot *out, bool is_within[2]);
 
-/* Return u where a piece is at height y, of which it is on both sides. */
-double revolve_u_at(const RevolveData *data, const RevolvePiece *piece, double y);
-
 /* Finish a shape whose pieces, lids and so on are set; NULL when memory is out. */
 Shape *revolve_place(Arena *arena, Shape *shape, RevolveData *data);
 
