@@ -53,20 +53,41 @@ static double norm_at(const SuperParams *s, V3 p)
     return norm2(norm2(fabs(p.x), fabs(p.y), s->p), fabs(p.z), s->q);
 }
 
-/* x^(p - 1) for x from 0 to 1. */
-static double power_less(double x, double p)
+/* norm2 and its slopes in a and b; infinite across a cusp. */
+static double norm2_slopes(double a, double b, double p, double *by_a, double *by_b)
 {
-    return p == 1 ? 1 : pow(x, p - 1);
+    double most = num_max(a, b), least = num_min(a, b), value = most, by_most = 1, by_least;
+    if (!(least > 0)) {
+        by_least = p > 1 ? 0 : p == 1 ? 1 : INFINITY;
+    } else {
+        double ratio = least / most, share = exp(p * log(ratio));
+        if (share < 0x1p-60) {
+            by_least = share / ratio;
+        } else {
+            double grow = exp(log1p(share) / p);
+            value = most * grow;
+            by_most = grow / (1 + share);
+            by_least = by_most * share / ratio;
+        }
+    }
+    *by_a = a >= b ? by_most : by_least;
+    *by_b = a >= b ? by_least : by_most;
+    return value;
 }
 
-/* The gradient; infinite across the cusps between octants. */
-static V3 gradient_at(const SuperParams *s, V3 p)
+typedef struct Norm {
+    double value;
+    V3 gradient;
+} Norm;
+
+static Norm norm_slopes(const SuperParams *s, V3 p)
 {
-    double x = fabs(p.x), y = fabs(p.y), z = fabs(p.z), a = norm2(x, y, s->p);
-    double flat = power_less(part2(a, z, s->q), s->q);
-    return v3(copysign(power_less(part2(x, y, s->p), s->p) * flat, p.x),
-              copysign(power_less(part2(y, x, s->p), s->p) * flat, p.y),
-              copysign(power_less(part2(z, a, s->q), s->q), p.z));
+    double x, y, flat, z;
+    double a = norm2_slopes(fabs(p.x), fabs(p.y), s->p, &x, &y);
+    double value = norm2_slopes(a, fabs(p.z), s->q, &flat, &z);
+    /* Nothing times infinity: no slope towards a cusp that is not there. */
+    V3 g = v3(x == 0 || flat == 0 ? 0 : x * flat, y == 0 || flat == 0 ? 0 : y * flat, z);
+    return (Norm){value, v3(copysign(g.x, p.x), copysign(g.y, p.y), copysign(g.z, p.z))};
 }
 
 static double norm_error(const SuperParams *s)
@@ -128,11 +149,17 @@ static double height_at(const SuperLine *l, double t)
     return norm_at(l->s, line_at(l, t)) - 1;
 }
 
-static LeafHit make_hit(const SuperLine *l, double t, int change)
+/* Multiply, where nothing times infinity is nothing. */
+static double slope_along(V3 g, V3 d)
 {
-    V3 g = gradient_at(l->s, line_at(l, t));
-    double doubt = 2 * norm_error(l->s) + v3_dot(v3_abs(g), l->error), slope = v3_dot(g, l->d);
-    double error = doubt / fabs(slope), at = l->base + t, most = v3_len(l->d);
+    return (d.x != 0 ? g.x * d.x : 0) + (d.y != 0 ? g.y * d.y : 0) + (d.z != 0 ? g.z * d.z : 0);
+}
+
+static LeafHit make_hit(const SuperLine *l, double t, V3 gradient, int change)
+{
+    double doubt = 2 * norm_error(l->s) + slope_along(v3_abs(gradient), l->error);
+    double error = doubt / fabs(slope_along(gradient, l->d));
+    double at = l->base + t, most = v3_len(l->d);
     /* Across a cusp both are infinite: the place is as certain as the point. */
     if (!(error * most < 1))
         error = v3_sum_abs(l->error) / most + sqrt(doubt < 1 ? doubt : EPS_DOUBLE) / most;
@@ -142,48 +169,43 @@ static LeafHit make_hit(const SuperLine *l, double t, int change)
 
 /* --- convex ones --------------------------------------------------------------------------- */
 
-/* Go from a place outside the surface to it; way: 1 forwards, -1 back.  Newton's method stays
- * outside; false when it is passed by. */
-static bool approach(const SuperLine *l, double from, int way, double *out)
+/* Go from a place to the surface; way: 1 forwards, -1 back.  Newton's method stays outside.
+ * Returns what was found there. */
+typedef enum Approach { APPROACH_MISS, APPROACH_HIT, APPROACH_INSIDE } Approach;
+
+static Approach approach(const SuperLine *l, double from, int way, LeafHit *out)
 {
     double t = from, certain = norm_error(l->s);
     for (int i = 0; i < 200; i++) {
-        V3 p = line_at(l, t);
-        double f = norm_at(l->s, p) - 1, slope = v3_dot(gradient_at(l->s, p), l->d);
-        if (f <= certain) {
-            *out = t;
-            return true;
+        Norm n = norm_slopes(l->s, line_at(l, t));
+        double f = n.value - 1, slope = slope_along(n.gradient, l->d), next = t - f / slope;
+        if (i == 0 && f < 0)
+            return APPROACH_INSIDE;
+        if (f <= certain || (next == t && slope * way < 0)) {
+            *out = make_hit(l, t, n.gradient, way);
+            return APPROACH_HIT;
         }
-        double next = t - f / slope;
         if (!(slope * way < 0) || next < l->lo || next > l->hi)
-            return false;
-        if (next == t) {
-            *out = t;
-            return true;
-        }
+            return APPROACH_MISS;
         t = next;
     }
-    return false;
+    return APPROACH_MISS;
 }
 
-/* Find the two crossings of a convex one on [lo, hi]; ends that are inside have none. */
-static int convex_hits(const SuperLine *l, bool *is_inside_before, LeafHit out[2])
+/* Find the two crossings of a convex one on [lo, hi]; ends that are inside have none.  most: 1 if
+ * the exit is not wanted where there is an entry. */
+static int convex_hits(const SuperLine *l, bool *is_inside_before, LeafHit *out, int most)
 {
-    double a, b;
-    bool is_in = height_at(l, l->lo) < 0, is_out = height_at(l, l->hi) < 0;
-    int count = 0;
-    *is_inside_before = is_in;
-    bool has_entry = !is_in && approach(l, l->lo, 1, &a);
-    if (!is_in && !has_entry)
+    Approach entry = approach(l, l->lo, 1, &out[0]);
+    *is_inside_before = entry == APPROACH_INSIDE;
+    if (entry == APPROACH_MISS)
         return 0;
-    bool has_exit = !is_out && approach(l, l->hi, -1, &b);
-    if (has_entry && has_exit && !(a < b))
+    int count = entry == APPROACH_HIT;
+    if (count >= most || approach(l, l->hi, -1, &out[count]) != APPROACH_HIT)
+        return count;
+    if (count == 1 && !(out[0].t < out[1].t))
         return 0;
-    if (has_entry)
-        out[count++] = make_hit(l, a, 1);
-    if (has_exit)
-        out[count++] = make_hit(l, b, -1);
-    return count;
+    return count + 1;
 }
 
 /* --- the others ---------------------------------------------------------------------------- */
@@ -197,6 +219,12 @@ static Corner corner_of(const SuperLine *l, double a, double b)
 {
     V3 p = v3_abs(line_at(l, a)), q = v3_abs(line_at(l, b));
     return (Corner){v3_min(p, q), v3_max(p, q)};
+}
+
+/* x^(p - 1) for x from 0 to 1. */
+static double power_less(double x, double p)
+{
+    return p == 1 ? 1 : pow(x, p - 1);
 }
 
 /* The least and the largest of x^(p - 1) for x in [lo, hi]. */
@@ -264,6 +292,12 @@ typedef struct HitList {
     int count, most;
 } HitList;
 
+static void add_crossing(const SuperLine *l, double t, int change, HitList *out)
+{
+    V3 gradient = norm_slopes(l->s, line_at(l, t)).gradient;
+    out->at[out->count++] = make_hit(l, t, gradient, change);
+}
+
 static void search(const SuperLine *l, double a, double b, double fa, double fb, int depth,
                    HitList *out)
 {
@@ -278,7 +312,7 @@ static void search(const SuperLine *l, double a, double b, double fa, double fb,
     double middle = 0.5 * (a + b);
     if (depth >= DEPTH_MAX || !(middle > a && middle < b) || is_monotone(l, &c, middle)) {
         if (is_crossed)
-            out->at[out->count++] = make_hit(l, find_between(l, a, b, fa, fb), fa > 0 ? 1 : -1);
+            add_crossing(l, find_between(l, a, b, fa, fb), fa > 0 ? 1 : -1, out);
         return;
     }
     double f = height_at(l, middle);
@@ -318,15 +352,16 @@ static int general_hits(const SuperLine *l, bool *is_inside_before, LeafHit *at,
 
 enum { HITS_MAX = 32 };
 
-static int find(const Shape *shape, const Ray *ray, double near, double far, bool *is_inside_before,
-                LeafHit out[HITS_MAX])
+/* Find the first crossings, `most` or a few more. */
+static int find(const Shape *shape, const Ray *ray, double near, double far, int most,
+                bool *is_inside_before, LeafHit out[HITS_MAX])
 {
     SuperLine l;
     *is_inside_before = false;
     if (!line_init(&l, shape, ray, near, far))
         return 0;
-    return l.is_convex ? convex_hits(&l, is_inside_before, out)
-                       : general_hits(&l, is_inside_before, out, HITS_MAX);
+    return l.is_convex ? convex_hits(&l, is_inside_before, out, most)
+                       : general_hits(&l, is_inside_before, out, most);
 }
 
 static bool super_list(const Shape *shape, const Line *line, ShapeScratch *scratch)
@@ -334,7 +369,7 @@ static bool super_list(const Shape *shape, const Line *line, ShapeScratch *scrat
     bool is_inside;
     LeafHit hits[HITS_MAX];
     Crossing crossing;
-    int count = find(shape, line->ray, line->near, line->far, &is_inside, hits);
+    int count = find(shape, line->ray, line->near, line->far, HITS_MAX, &is_inside, hits);
     for (int i = 0; i < count; i++) {
         crossing_fill(shape, &hits[i], &crossing);
         scratch_push(scratch, &crossing);
@@ -347,12 +382,17 @@ static bool super_closest(const Shape *shape, const Ray *ray, ShapeScratch *scra
     (void)scratch;
     bool is_inside;
     LeafHit hits[HITS_MAX];
-    int count = find(shape, ray, ray->tmin, ray->tmax, &is_inside, hits);
-    for (int i = 0; i < count; i++)
-        if (hits[i].t > ray->tmin && hits[i].t < ray->tmax) {
-            crossing_fill(shape, &hits[i], out);
-            return true;
-        }
+    /* The first may be at tmin itself: then the others count. */
+    for (int most = 1; most <= HITS_MAX; most += HITS_MAX - 1) {
+        int count = find(shape, ray, ray->tmin, ray->tmax, most, &is_inside, hits);
+        for (int i = 0; i < count; i++)
+            if (hits[i].t > ray->tmin && hits[i].t < ray->tmax) {
+                crossing_fill(shape, &hits[i], out);
+                return true;
+            }
+        if (count == 0)
+            return false;
+    }
     return false;
 }
 
@@ -373,7 +413,7 @@ static void super_point(const Shape *shape, const Crossing *crossing, V3 p, Loca
     const SuperParams *s = &shape->u.super;
     double norm = norm_at(s, p);
     out->p = norm > 0 ? v3_scale(p, 1 / norm) : p;
-    out->ng = normal_of(gradient_at(s, out->p));
+    out->ng = normal_of(norm_slopes(s, out->p).gradient);
     out->error = (4 * norm_error(s) + 8 * EPS_DOUBLE) * v3_sum_abs(out->p);
 }
 
