@@ -1,5 +1,5 @@
-/* Trees of small meshes: binary, split where the surface area heuristic finds it cheapest.
- * SPDX-License-Identifier: Apache-2.0 */
+/* Trees of small meshes: four children a node, split where the surface area heuristic finds it
+ * cheapest. SPDX-License-Identifier: Apache-2.0 */
 #include "accel/tri_tree_int.h"
 
 #include "base/mem.h"
@@ -7,10 +7,10 @@
 #include <string.h>
 
 enum {
-    LEAF_ITEMS = 4,  /* as many or fewer are not split */
-    BINS = 16,       /* places to split at that are tried */
-    EVEN_DEPTH = 32, /* deeper nodes are split evenly, so that no tree is deeper than the stack */
-    STACK_MAX = 64
+    LEAF_ITEMS = 4,    /* as many or fewer are not split */
+    BINS = 16,         /* places to split at that are tried */
+    EVEN_DEPTH = 32,   /* deeper nodes are split evenly, so that no tree is deeper than the stack */
+    STACK_MAX = 3 * 64 /* three left over on each level */
 };
 
 /* Rounding of the slab test: a few operations in float. */
@@ -137,29 +137,59 @@ static uint32_t split_items(const Build *b, uint32_t begin, uint32_t end, int de
     return at == begin || at == end ? begin + (end - begin) / 2 : at;
 }
 
-static void build(Build *b, uint32_t node, uint32_t begin, uint32_t end, int depth)
+/* Part of the items, which becomes a child. */
+typedef struct Part {
+    uint32_t begin, end;
+} Part;
+
+/* Split a part in up to four; returns how many. */
+static int split_part(const Build *b, Part all, int depth, Part out[TRI_NODE_WIDTH])
 {
+    int count = 1;
+    out[0] = all;
+    while (count < TRI_NODE_WIDTH) {
+        int largest = 0;
+        for (int i = 1; i < count; i++)
+            if (out[i].end - out[i].begin > out[largest].end - out[largest].begin)
+                largest = i;
+        Part *part = &out[largest];
+        if (part->end - part->begin <= LEAF_ITEMS)
+            break;
+        uint32_t between = split_items(b, part->begin, part->end, depth);
+        out[count++] = (Part){between, part->end};
+        part->end = between;
+    }
+    return count;
+}
+
+static void build(Build *b, uint32_t node, Part all, int depth)
+{
+    Part parts[TRI_NODE_WIDTH];
+    int count = split_part(b, all, depth, parts);
     TriNode *n = &b->tree->nodes[node];
-    Box all = no_box;
-    for (uint32_t i = begin; i < end; i++)
-        box_add(&all, &b->boxes[b->tree->items[i]]);
-    memcpy(n->lo, all.lo, sizeof n->lo);
-    memcpy(n->hi, all.hi, sizeof n->hi);
-    n->first = begin;
-    n->count = end - begin;
-    if (n->count <= LEAF_ITEMS)
-        return;
-    uint32_t between = split_items(b, begin, end, depth);
-    n->count = 0;
-    n->first = b->tree->node_count;
-    b->tree->node_count += 2;
-    build(b, n->first, begin, between, depth + 1);
-    build(b, n->first + 1, between, end, depth + 1);
+    for (int i = 0; i < TRI_NODE_WIDTH; i++) {
+        Box box = no_box;
+        for (uint32_t k = i < count ? parts[i].begin : 0; i < count && k < parts[i].end; k++)
+            box_add(&box, &b->boxes[b->tree->items[k]]);
+        for (int axis = 0; axis < 3; axis++) {
+            n->side[0][axis][i] = box.lo[axis];
+            n->side[1][axis][i] = box.hi[axis];
+        }
+        if (i >= count)
+            continue;
+        n->first[i] = parts[i].begin;
+        n->count[i] = parts[i].end - parts[i].begin;
+        if (n->count[i] > LEAF_ITEMS) {
+            n->count[i] = 0;
+            n->first[i] = b->tree->node_count++;
+            build(b, n->first[i], parts[i], depth + 1);
+        }
+    }
 }
 
 Status tri_tree_init(Diag *diag, const struct RTCBounds *boxes, uint32_t count, TriTree *out)
 {
-    *out = (TriTree){.nodes = mem_array(2 * (size_t)count, sizeof *out->nodes),
+    *out = (TriTree){.nodes = mem_array(count, sizeof *out->nodes),
                      .items = mem_array(count, sizeof *out->items),
                      .node_count = 1};
     Build b = {out, mem_array(count, sizeof *b.boxes)};
@@ -171,7 +201,7 @@ Status tri_tree_init(Diag *diag, const struct RTCBounds *boxes, uint32_t count, 
         out->items[i] = i;
     }
     if (is_memory)
-        build(&b, 0, 0, count, 0);
+        build(&b, 0, (Part){0, count}, 0);
     mem_free(b.boxes);
     void *fitted = is_memory ? mem_resize(out->nodes, out->node_count * sizeof *out->nodes) : NULL;
     if (fitted)
@@ -189,61 +219,81 @@ void tri_tree_done(TriTree *tree)
     *tree = (TriTree){0};
 }
 
+typedef float Four __attribute__((vector_size(4 * TRI_NODE_WIDTH)));
+typedef int32_t FourMask __attribute__((vector_size(4 * TRI_NODE_WIDTH)));
+#define FOUR_PICK(mask, a, b) ((Four)(((mask) & (FourMask)(a)) | (~(mask) & (FourMask)(b))))
+
+static inline Four four_of(float x)
+{
+    return (Four){x, x, x, x};
+}
+
+static inline Four four_at(const float x[TRI_NODE_WIDTH])
+{
+    return (Four){x[0], x[1], x[2], x[3]};
+}
+
 typedef struct Walk {
-    float o[3], inverse[3];
-    float far;
+    float o[3], inverse[3], far;
+    bool is_back[3]; /* the ray goes down along an axis */
 } Walk;
 
-/* Return where the ray enters a node, or infinity.  A ray along a side has no number for it, and
- * is not cut there. */
-static inline float node_entry(const Walk *w, const TriNode *n)
+/* Find where the ray enters the children of a node; returns which ones it may meet.  A ray along a
+ * side has no number for it, and is not cut there. */
+static inline FourMask node_entries(const Walk *w, const TriNode *n, Four *entry)
 {
-    float near = 0, far = w->far;
+    Four near = four_of(0), far = four_of(w->far);
     for (int i = 0; i < 3; i++) {
-        float a = (n->lo[i] - w->o[i]) * w->inverse[i], b = (n->hi[i] - w->o[i]) * w->inverse[i];
-        float first = w->inverse[i] < 0 ? b : a, last = w->inverse[i] < 0 ? a : b;
-        near = first > near ? first : near;
-        far = last < far ? last : far;
+        Four o = four_of(w->o[i]), inverse = four_of(w->inverse[i]);
+        Four first = (four_at(n->side[w->is_back[i]][i]) - o) * inverse;
+        Four last = (four_at(n->side[!w->is_back[i]][i]) - o) * inverse;
+        near = FOUR_PICK(first > near, first, near);
+        far = FOUR_PICK(last < far, last, far);
     }
-    return near * (1 - SLAB_SLACK) <= far * (1 + SLAB_SLACK) ? near : INFINITY;
+    *entry = near * four_of(1 - SLAB_SLACK);
+    return *entry <= far * four_of(1 + SLAB_SLACK);
+}
+
+/* A child that is still to be looked at. */
+typedef struct Waiting {
+    uint32_t first, count;
+    float entry;
+} Waiting;
+
+/* Put the children that the ray may meet on a stack, the nearest on top; returns the new top. */
+static inline int push_children(const Walk *w, const TriNode *n, Waiting *stack, int top)
+{
+    Four entry;
+    FourMask is_met = node_entries(w, n, &entry);
+    int bottom = top;
+    for (int i = 0; i < TRI_NODE_WIDTH; i++) {
+        if (!is_met[i])
+            continue;
+        int at = top++;
+        for (; at > bottom && stack[at - 1].entry < entry[i]; at--)
+            stack[at] = stack[at - 1];
+        stack[at] = (Waiting){n->first[i], n->count[i], entry[i]};
+    }
+    return top;
 }
 
 void tri_tree_walk(const TriTree *tree, const struct RTCRay *ray,
                    float (*offer)(void *query, uint32_t triangle, float far), void *query)
 {
-    Walk w = {{ray->org_x, ray->org_y, ray->org_z},
-              {1 / ray->dir_x, 1 / ray->dir_y, 1 / ray->dir_z},
-              ray->tfar};
-    struct {
-        uint32_t node;
-        float entry;
-    } stack[STACK_MAX];
-    int top = 0;
-    uint32_t at = 0;
-    if (!(node_entry(&w, &tree->nodes[0]) < INFINITY))
-        return;
-    for (;;) {
-        const TriNode *n = &tree->nodes[at];
-        for (uint32_t i = 0; i < n->count; i++)
-            w.far = offer(query, tree->items[n->first + i], w.far);
-        if (n->count == 0) {
-            float a = node_entry(&w, n + (n->first - at)),
-                  b = node_entry(&w, n + (n->first - at) + 1);
-            uint32_t swap = b < a, near = n->first + swap, far = n->first + 1 - swap;
-            if (a < INFINITY && b < INFINITY) {
-                stack[top].node = far;
-                stack[top++].entry = a < b ? b : a;
-            }
-            if (a < INFINITY || b < INFINITY) {
-                at = near;
-                continue;
-            }
-        }
-        do {
-            if (top == 0)
-                return;
-            top--;
-        } while (stack[top].entry * (1 - SLAB_SLACK) > w.far);
-        at = stack[top].node;
+    Walk w = {.o = {ray->org_x, ray->org_y, ray->org_z},
+              .inverse = {1 / ray->dir_x, 1 / ray->dir_y, 1 / ray->dir_z},
+              .far = ray->tfar};
+    for (int i = 0; i < 3; i++)
+        w.is_back[i] = w.inverse[i] < 0;
+    Waiting stack[STACK_MAX];
+    int top = push_children(&w, &tree->nodes[0], stack, 0);
+    while (top > 0) {
+        Waiting next = stack[--top];
+        if (next.entry > w.far)
+            continue;
+        if (next.count == 0)
+            top = push_children(&w, &tree->nodes[next.first], stack, top);
+        for (uint32_t i = 0; i < next.count; i++)
+            w.far = offer(query, tree->items[next.first + i], w.far);
     }
 }

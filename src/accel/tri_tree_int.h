@@ -10,11 +10,14 @@
 /* Up to this many triangles a mesh has a tree of ours. */
 enum { TRI_TREE_MAX = 1 << 16 };
 
-/* An inner node has two children, side by side; a leaf has items. */
+enum { TRI_NODE_WIDTH = 4 };
+
+/* The boxes of up to four children, in the frame and padded: lower and upper sides, side by side so
+ * that they are tested together.  A child that is missing has an empty box. */
 typedef struct TriNode {
-    float lo[3], hi[3]; /* in the frame, padded */
-    uint32_t first;     /* child, or place in items */
-    uint32_t count;     /* items; 0: an inner node */
+    float side[2][3][TRI_NODE_WIDTH];
+    uint32_t first[TRI_NODE_WIDTH]; /* the child's node, or its place in items */
+    uint32_t count[TRI_NODE_WIDTH]; /* of its items; 0: it is a node */
 } TriNode;
 
 typedef struct TriTree {

@@ -249,6 +249,31 @@ static double inverse_of(double d, double size)
     return 1 / (d < 0 ? (d < -least ? d : -least) : d > least ? d : least);
 }
 
+/* Return the cell a place lies in, moved to the field if it is beside it. */
+static inline uint32_t cell_at(double place, int cells)
+{
+    return place > 0 ? (uint32_t)(place < cells ? place : cells - 1) : 0;
+}
+
+/* Send a ray through the smallest block that holds a stretch of it. */
+static void walk_stretch(HeightWalk *w, Stretch s)
+{
+    const HeightData *d = w->data;
+    double xa = w->shear.o.x + s.from * w->d.x, xb = w->shear.o.x + s.to * w->d.x;
+    double za = w->shear.o.z + s.from * w->d.z, zb = w->shear.o.z + s.to * w->d.z;
+    uint32_t x0 = cell_at((xa < xb ? xa : xb) - BLOCK_PAD, d->columns - 1);
+    uint32_t x1 = cell_at((xa < xb ? xb : xa) + BLOCK_PAD, d->columns - 1);
+    uint32_t z0 = cell_at((za < zb ? za : zb) - BLOCK_PAD, d->rows - 1);
+    uint32_t z1 = cell_at((za < zb ? zb : za) + BLOCK_PAD, d->rows - 1);
+    int level = 0;
+    for (uint32_t differ = (x0 ^ x1) | (z0 ^ z1); differ; differ >>= 1)
+        level++;
+    if (level)
+        walk_block(w, level, (int)(x0 >> level), (int)(z0 >> level), s);
+    else
+        test_cell(w, (int)x0, (int)z0);
+}
+
 /* Move a ray to the box around the field and send it through; false when it misses the box.
  * What the arithmetic does depends on the line alone, not on the part that is asked for. */
 static bool walk(HeightWalk *w, const Shape *shape, const LocalRay *local)
@@ -270,7 +295,8 @@ static bool walk(HeightWalk *w, const Shape *shape, const LocalRay *local)
     w->off =
         v3_sum_abs(local->o_error) + fmax(fabs(s.from), fabs(s.to)) * v3_sum_abs(local->d_error);
     s = (Stretch){fmax(s.from, w->tmin) - w->shear.start, fmin(s.to, w->tmax) - w->shear.start};
-    walk_block(w, d->top, 0, 0, s);
+    if (s.from <= s.to)
+        walk_stretch(w, s);
     return true;
 }
 
