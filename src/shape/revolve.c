@@ -105,7 +105,7 @@ static bool cut_piece(const RevolveData *data, const RevolvePiece *piece, const 
         return false;
     /* Where the line is further out than all pieces, a little more does no harm, and cutting it off
      * costs more. */
-    double room = data->is_square ? 0 : 2 * (l->hi - l->lo);
+    double room = 2 * (l->hi - l->lo);
     double lo = l->near - (l->near > l->lo ? 0 : room), hi = l->far + (l->far < l->hi ? 0 : room);
     for (int end = 0; end < 2; end++) {
         double s = out->s[end];
@@ -133,6 +133,8 @@ static bool line_begin(RevolveLine *l, const RevolveData *data, const LocalRay *
     l->e = v3_scale(ray->d, 1 / l->speed);
     l->lo = -INFINITY;
     l->hi = INFINITY;
+    l->axis = 0;
+    l->per_y = 1 / l->e.y;
     double size = num_max(data->r_max, num_max(fabs(data->y_lo), fabs(data->y_hi)));
     double y_lo = data->y_lo - MARGIN * size, y_hi = data->y_hi + MARGIN * size;
     if (l->e.y != 0) {
@@ -146,10 +148,10 @@ static bool line_begin(RevolveLine *l, const RevolveData *data, const LocalRay *
     double cross = l->f.x * l->e.z - l->f.z * l->e.x;
     double room = r * r * across - cross * cross;
     if (room > 0) {
-        double nearest = -(l->f.x * l->e.x + l->f.z * l->e.z) / across;
         double half = sqrt(room) / across;
-        l->lo = num_max(l->lo, nearest - half);
-        l->hi = num_min(l->hi, nearest + half);
+        l->axis = -(l->f.x * l->e.x + l->f.z * l->e.z) / across;
+        l->lo = num_max(l->lo, l->axis - half);
+        l->hi = num_min(l->hi, l->axis + half);
     } else if (across != 0 || l->f.x * l->f.x + l->f.z * l->f.z >= r * r) {
         return false;
     }
@@ -163,7 +165,8 @@ static bool is_near(const RevolveLine *l, const Bound *box, double size)
 {
     double lo = l->lo, hi = l->far, pad = 0x1p-45 * size;
     if (l->e.y != 0) {
-        double a = (box->lo.y - pad - l->f.y) / l->e.y, b = (box->hi.y + pad - l->f.y) / l->e.y;
+        double a = (box->lo.y - pad - l->f.y) * l->per_y;
+        double b = (box->hi.y + pad - l->f.y) * l->per_y;
         lo = num_max(lo, num_min(a, b));
         hi = num_min(hi, num_max(a, b));
         if (lo > hi)
@@ -171,16 +174,15 @@ static bool is_near(const RevolveLine *l, const Bound *box, double size)
     } else if (l->f.y < box->lo.y - pad || l->f.y > box->hi.y + pad) {
         return false;
     }
-    double x0 = l->f.x + lo * l->e.x, z0 = l->f.z + lo * l->e.z;
-    double x1 = l->f.x + hi * l->e.x, z1 = l->f.z + hi * l->e.z;
-    double most = num_max(x0 * x0 + z0 * z0, x1 * x1 + z1 * z1);
     double inner = (box->lo.x - pad) * (1 - MARGIN), outer = (box->hi.x + pad) * (1 + MARGIN);
-    if (inner > 0 && most < inner * inner)
-        return false;
-    double across = l->e.x * l->e.x + l->e.z * l->e.z;
-    double nearest = across > 0 ? -(l->f.x * l->e.x + l->f.z * l->e.z) / across : lo;
-    nearest = num_max(lo, num_min(hi, nearest));
-    double x = l->f.x + nearest * l->e.x, z = l->f.z + nearest * l->e.z;
+    if (inner > 0) {
+        double x0 = l->f.x + lo * l->e.x, z0 = l->f.z + lo * l->e.z;
+        double x1 = l->f.x + hi * l->e.x, z1 = l->f.z + hi * l->e.z;
+        if (num_max(x0 * x0 + z0 * z0, x1 * x1 + z1 * z1) < inner * inner)
+            return false;
+    }
+    double s = num_max(lo, num_min(hi, l->axis));
+    double x = l->f.x + s * l->e.x, z = l->f.z + s * l->e.z;
     return x * x + z * z <= outer * outer;
 }
 

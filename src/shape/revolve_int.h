@@ -39,6 +39,8 @@ typedef struct RevolveLine {
     double base, speed; /* t = base + s / speed */
     double lo, hi;      /* s: beyond, and at these, the line is further out than any piece */
     double near, far;   /* the part of lo to hi where crossings are wanted */
+    double axis;        /* s nearest to the axis */
+    double per_y;       /* 1 / e.y */
 } RevolveLine;
 
 /* A place on a piece where a line crosses it. */
