@@ -260,8 +260,10 @@ static bool is_proved(const SpanView *v, SweepEnd end, double from, double to)
 {
     int n = v->degree;
     double off[4], power[BERNSTEIN_DEGREE_MAX + 1], part[BERNSTEIN_DEGREE_MAX + 1], size = 0;
-    for (int i = 0; i <= n; i++)
+    for (int i = 0; i <= n; i++) {
         off[i] = v->s[i] - end.s;
+        size = num_max(size, off[i] * off[i]);
+    }
     for (int i = 0; i <= 2 * n; i++) {
         power[i] = -v->d[i];
         size = num_max(size, fabs(v->d[i]));
