@@ -114,6 +114,10 @@ static double full_eye_count(const Sketch sketches[2], const Plan *plan, int cos
     double pixels = sketches[0].size.side * sketches[0].size.side;
     double grown = sketches[1].size.side * sketches[1].size.side / pixels;
     double power = least > 0 && grown > 1 ? log(most / least) / log(grown) : 1;
+    /* Estimates of the smaller one took more: they reached beyond what light there is, and say
+     * nothing of how it goes on. */
+    if (cost_is_of_estimates(cost) && power < 0)
+        power = 1;
     power = fmin(1, fmax(0, power));
     if (cost_feature(cost) == FEATURE_FINAL_GATHER && plan_has(plan, FEATURE_IRRADIANCE_CACHE))
         power *= KEPT_POWER;
