@@ -87,6 +87,7 @@ Node *read_height_field(Parser *p);
 Node *read_mesh(Parser *p);
 Node *read_mesh2(Parser *p);
 Node *read_isosurface(Parser *p);
+Node *read_julia_fractal(Parser *p);
 Node *read_union(Parser *p);
 Node *read_merge(Parser *p);
 Node *read_intersection(Parser *p);

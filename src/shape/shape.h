@@ -120,6 +120,40 @@ typedef struct IsosurfaceParams {
     double threshold;       /* inside is func <= threshold */
 } IsosurfaceParams;
 
+/* What is iterated: z -> f(z) + c. */
+typedef enum JuliaFunction {
+    JULIA_SQR,
+    JULIA_CUBE,
+    JULIA_EXP,
+    JULIA_RECIPROCAL,
+    JULIA_SIN,
+    JULIA_ASIN,
+    JULIA_SINH,
+    JULIA_ASINH,
+    JULIA_COS,
+    JULIA_ACOS,
+    JULIA_COSH,
+    JULIA_ACOSH,
+    JULIA_TAN,
+    JULIA_ATAN,
+    JULIA_TANH,
+    JULIA_ATANH,
+    JULIA_LN,
+    JULIA_PWR
+} JuliaFunction;
+
+/* Points x, y, z of the slice n . (x, y, z, w) = slice_distance that do not escape in so many
+ * iterations. */
+typedef struct JuliaForm {
+    bool is_hypercomplex; /* else quaternions, of which there are only squares and cubes */
+    JuliaFunction function;
+    double c[4], power[2]; /* the exponent of JULIA_PWR */
+    int iterations;        /* at least 1 */
+    double precision;      /* what is smaller than 1 over this may be missed */
+    double slice[4];       /* n, unit; n[3] is not 0 */
+    double slice_distance;
+} JuliaForm;
+
 /* How much rounding a leaf's own numbers bring: derived when it is made or transformed. */
 typedef struct ShapeRounding {
     V3 row;       /* lengths of the rows of xform.from: object units per scene unit */
@@ -150,6 +184,7 @@ struct Shape {
         OvusParams ovus;
         TriangleParams triangle;
         IsosurfaceParams iso;
+        const JuliaForm *julia;
         const MeshData *mesh; /* shared between instances, like those below */
         const PolygonData *polygon;
         const PrismData *prism;
@@ -270,6 +305,7 @@ Shape *shape_ovus(Arena *arena, double bottom, double top);
  * first and the last only set slopes. */
 Shape *shape_sor(Arena *arena, const V2 *points, int count, bool is_open);
 
+Shape *shape_julia(Arena *arena, const JuliaForm *form); /* form is copied */
 Shape *shape_isosurface(Arena *arena, const Func *func, double threshold, const Shape *container,
                         bool is_open);
 Shape *shape_height_field(Arena *arena, const HeightData *data); /* after height_prepare */

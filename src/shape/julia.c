@@ -1,0 +1,492 @@
+/* Julia fractals: the points of a slice through four dimensions from which an iteration does not
+ * escape.
+ *
+ * Quaternions are iterated as a real part and a vector.  Hypercomplex numbers commute, and are
+ * pairs of complex numbers that are iterated each on its own: x + iy + jz + kw with ij = k, j^2 =
+ * -1 is a = (x - w) + i(y + z) and b = (x + w) + i(y - z).
+ *
+ * A line is walked through by steps.  Squares and cubes tell from how fast they escape how far the
+ * set is at least: with a potential G the distance is no less than G/(2|G'|); others are looked at
+ * every so often.  Where a step goes in or out, halving finds the place.
+ * SPDX-License-Identifier: Apache-2.0 */
+#include "shape/shape_int.h"
+
+#include <complex.h>
+
+enum { HALVINGS = 60, FAR_ITERATIONS = 12 };
+
+/* Steps are no shorter than this part of what the precision asks for: what is finer may be missed.
+ */
+#define STEP_PART 0.25
+
+/* Norm squared of what has escaped far enough for its potential. */
+#define FAR_NORM 1e12
+
+/* How far off the set a point found on it may be, in radii: the set is rough. */
+#define POINT_ROUNDING 1e-9
+
+/* A place and its derivatives by the three coordinates. */
+typedef struct Quaternion {
+    double r;
+    V3 v;
+} Quaternion;
+
+typedef double complex Complex;
+
+typedef struct Pair {
+    Complex a, b;
+} Pair;
+
+/* What an iteration tells of a place. */
+typedef struct Fate {
+    bool is_inside;
+    double distance; /* in 4D, to the set at least; 0: not known */
+} Fate;
+
+static double radius_of(const JuliaForm *form)
+{
+    double c = sqrt(form->c[0] * form->c[0] + form->c[1] * form->c[1] + form->c[2] * form->c[2] +
+                    form->c[3] * form->c[3]);
+    return form->is_hypercomplex ? 4 : num_min(2, 1 + c * (1 + 0x1p-40));
+}
+
+Shape *shape_julia(Arena *arena, const JuliaForm *form)
+{
+    Shape *shape = leaf_new(arena, SHAPE_JULIA);
+    JuliaForm *own = arena_copy(arena, form, sizeof *form);
+    if (!shape || !own)
+        return NULL;
+    shape->u.julia = own;
+    leaf_place(shape, &XFORM_IDENTITY);
+    return shape;
+}
+
+/* The fourth coordinate of a point of the slice. */
+static double fourth(const JuliaForm *form, V3 p)
+{
+    const double *n = form->slice;
+    return (form->slice_distance - n[0] * p.x - n[1] * p.y - n[2] * p.z) / n[3];
+}
+
+/* The norm squared above which a number has escaped. */
+static double limit2_of(const JuliaForm *form)
+{
+    double radius = radius_of(form);
+    return form->is_hypercomplex ? 16 : radius * radius * (1 + 0x1p-24);
+}
+
+/* On the surface the norm squared of one of the iterations is the limit: its gradient is square to
+ * the surface. */
+typedef struct Decider {
+    double limit2, off;
+    V3 gradient;
+} Decider;
+
+static bool decides(Decider *decider, double n2)
+{
+    double off = fabs(n2 / decider->limit2 - 1);
+    bool is_nearer = off < decider->off;
+    decider->off = is_nearer ? off : decider->off;
+    return is_nearer;
+}
+
+/* --- quaternions ---------------------------------------------------------------------------- */
+
+static double norm2(Quaternion q)
+{
+    return q.r * q.r + v3_len2(q.v);
+}
+
+static Quaternion quaternion_step(const JuliaForm *form, Quaternion q)
+{
+    double d = v3_len2(q.v), r = q.r;
+    bool is_cube = form->function == JULIA_CUBE;
+    double real = is_cube ? r * (r * r - 3 * d) : r * r - d;
+    double scale = is_cube ? 3 * r * r - d : 2 * r;
+    V3 c = v3(form->c[1], form->c[2], form->c[3]);
+    return (Quaternion){real + form->c[0], v3_mad(c, scale, q.v)};
+}
+
+/* What a step makes of a derivative dq. */
+static Quaternion quaternion_slope(const JuliaForm *form, Quaternion q, Quaternion dq)
+{
+    double r = q.r, dr = dq.r, d = v3_len2(q.v), dd = 2 * v3_dot(q.v, dq.v);
+    if (form->function == JULIA_CUBE)
+        return (Quaternion){dr * (r * r - 3 * d) + r * (2 * r * dr - 3 * dd),
+                            v3_mad(v3_scale(q.v, 6 * r * dr - dd), 3 * r * r - d, dq.v)};
+    return (Quaternion){2 * r * dr - dd, v3_mad(v3_scale(q.v, 2 * dr), 2 * r, dq.v)};
+}
+
+/* After `number` steps |z|^2 is `n2`, and it has escaped; the derivative has grown by `growth`. */
+static double distance_of(const JuliaForm *form, double limit2, double n2, double growth,
+                          int number, double degree)
+{
+    /* The potential is ln|z| / degree^number; that of the surface is what the last test asks. */
+    double rest = 0.5 * log(limit2) * pow(degree, number + 1 - form->iterations);
+    double length = sqrt(n2), above = log(length) - rest;
+    return above > 0 ? 0.5 * above * length / growth : 0;
+}
+
+static Fate quaternion_fate(const JuliaForm *form, V3 p)
+{
+    Quaternion q = {p.x, v3(p.y, p.z, fourth(form, p))};
+    double limit2 = limit2_of(form), growth = 1;
+    double degree = form->function == JULIA_CUBE ? 3 : 2;
+    int escaped = -1;
+    for (int i = 0; i < form->iterations + FAR_ITERATIONS; i++) {
+        double n2 = norm2(q);
+        if (escaped < 0 && i >= form->iterations)
+            return (Fate){.is_inside = true};
+        if (escaped < 0 && n2 > limit2)
+            escaped = i;
+        if (escaped >= 0 && n2 > FAR_NORM)
+            return (Fate){.distance = distance_of(form, limit2, n2, growth, i, degree)};
+        growth *= degree == 3 ? 3 * n2 : 2 * sqrt(n2);
+        q = quaternion_step(form, q);
+    }
+    return (Fate){.is_inside = escaped < 0};
+}
+
+static V3 quaternion_gradient(Quaternion q, const Quaternion d[3])
+{
+    return v3(q.r * d[0].r + v3_dot(q.v, d[0].v), q.r * d[1].r + v3_dot(q.v, d[1].v),
+              q.r * d[2].r + v3_dot(q.v, d[2].v));
+}
+
+static V3 quaternion_normal(const JuliaForm *form, V3 p, double tilt, bool is_last)
+{
+    const double *n = form->slice;
+    Quaternion q = {p.x, v3(p.y, p.z, fourth(form, p))};
+    Quaternion d[3] = {{1, v3(0, 0, -tilt * n[0] / n[3])},
+                       {0, v3(1, 0, -tilt * n[1] / n[3])},
+                       {0, v3(0, 1, -tilt * n[2] / n[3])}};
+    Decider decider = {.limit2 = limit2_of(form), .off = INFINITY};
+    for (int i = 0; i < form->iterations; i++) {
+        if (decides(&decider, norm2(q)))
+            decider.gradient = quaternion_gradient(q, d);
+        for (int k = 0; k < 3; k++)
+            d[k] = quaternion_slope(form, q, d[k]);
+        q = quaternion_step(form, q);
+    }
+    return is_last ? quaternion_gradient(q, d) : decider.gradient;
+}
+
+/* --- hypercomplex numbers ------------------------------------------------------------------- */
+
+static Pair pair_of(double x, double y, double z, double w)
+{
+    return (Pair){CMPLX(x - w, y + z), CMPLX(x + w, y - z)};
+}
+
+static double squared(Complex z)
+{
+    return creal(z) * creal(z) + cimag(z) * cimag(z);
+}
+
+static double pair_norm2(Pair z)
+{
+    return 0.5 * (squared(z.a) + squared(z.b));
+}
+
+/* Cubes are squares here: so the language has it. */
+static Complex apply(const JuliaForm *form, Complex z)
+{
+    switch (form->function) {
+    case JULIA_EXP:
+        return cexp(z);
+    case JULIA_RECIPROCAL:
+        return 1 / z;
+    case JULIA_SIN:
+        return csin(z);
+    case JULIA_ASIN:
+        return casin(z);
+    case JULIA_SINH:
+        return csinh(z);
+    case JULIA_ASINH:
+        return casinh(z);
+    case JULIA_COS:
+        return ccos(z);
+    case JULIA_ACOS:
+        return cacos(z);
+    case JULIA_COSH:
+        return ccosh(z);
+    case JULIA_ACOSH:
+        return cacosh(z);
+    case JULIA_TAN:
+        return ctan(z);
+    case JULIA_ATAN:
+        return catan(z);
+    case JULIA_TANH:
+        return ctanh(z);
+    case JULIA_ATANH:
+        return catanh(z);
+    case JULIA_LN:
+        return clog(z);
+    case JULIA_PWR:
+        return cpow(z, CMPLX(form->power[0], form->power[1]));
+    default:
+        return CMPLX(creal(z) * creal(z) - cimag(z) * cimag(z), 2 * creal(z) * cimag(z));
+    }
+}
+
+static Complex apply_slope(const JuliaForm *form, Complex z, Complex value)
+{
+    switch (form->function) {
+    case JULIA_EXP:
+        return value;
+    case JULIA_RECIPROCAL:
+        return -value * value;
+    case JULIA_SIN:
+        return ccos(z);
+    case JULIA_ASIN:
+        return 1 / csqrt(1 - z * z);
+    case JULIA_SINH:
+        return ccosh(z);
+    case JULIA_ASINH:
+        return 1 / csqrt(1 + z * z);
+    case JULIA_COS:
+        return -csin(z);
+    case JULIA_ACOS:
+        return -1 / csqrt(1 - z * z);
+    case JULIA_COSH:
+        return csinh(z);
+    case JULIA_ACOSH:
+        return 1 / (csqrt(z - 1) * csqrt(z + 1));
+    case JULIA_TAN:
+        return 1 + value * value;
+    case JULIA_ATAN:
+        return 1 / (1 + z * z);
+    case JULIA_TANH:
+        return 1 - value * value;
+    case JULIA_ATANH:
+        return 1 / (1 - z * z);
+    case JULIA_LN:
+        return 1 / z;
+    case JULIA_PWR: {
+        Complex power = CMPLX(form->power[0], form->power[1]);
+        return power * cpow(z, power - 1);
+    }
+    default:
+        return 2 * z;
+    }
+}
+
+static bool is_square(const JuliaForm *form)
+{
+    return form->function == JULIA_SQR || form->function == JULIA_CUBE;
+}
+
+/* How far the set of one of the two complex numbers is at least, where it escapes. */
+static double square_distance(const JuliaForm *form, Complex z, Complex c)
+{
+    double growth = 1;
+    for (int i = 0; i < form->iterations + FAR_ITERATIONS; i++) {
+        double n2 = squared(z);
+        if (n2 > FAR_NORM)
+            return distance_of(form, 32, n2, growth, i, 2);
+        growth *= 2 * sqrt(n2);
+        z = apply(form, z) + c;
+    }
+    return 0;
+}
+
+static Fate pair_fate(const JuliaForm *form, V3 p)
+{
+    Pair z = pair_of(p.x, p.y, p.z, fourth(form, p)), start = z;
+    Pair c = pair_of(form->c[0], form->c[1], form->c[2], form->c[3]);
+    for (int i = 0; i < form->iterations; i++) {
+        if (!(pair_norm2(z) <= 16)) {
+            if (!is_square(form))
+                return (Fate){.distance = 0};
+            double a = square_distance(form, start.a, c.a);
+            double b = square_distance(form, start.b, c.b);
+            return (Fate){.distance = num_max(a, b) * 0.7071067811865475};
+        }
+        z = (Pair){apply(form, z.a) + c.a, apply(form, z.b) + c.b};
+    }
+    return (Fate){.is_inside = true};
+}
+
+static V3 pair_gradient(Pair z, const Pair d[3])
+{
+    return v3(creal(conj(z.a) * d[0].a + conj(z.b) * d[0].b),
+              creal(conj(z.a) * d[1].a + conj(z.b) * d[1].b),
+              creal(conj(z.a) * d[2].a + conj(z.b) * d[2].b));
+}
+
+static V3 pair_normal(const JuliaForm *form, V3 p, double tilt, bool is_last)
+{
+    const double *n = form->slice;
+    Pair z = pair_of(p.x, p.y, p.z, fourth(form, p));
+    Pair c = pair_of(form->c[0], form->c[1], form->c[2], form->c[3]);
+    Pair d[3] = {pair_of(1, 0, 0, -tilt * n[0] / n[3]), pair_of(0, 1, 0, -tilt * n[1] / n[3]),
+                 pair_of(0, 0, 1, -tilt * n[2] / n[3])};
+    Decider decider = {.limit2 = limit2_of(form), .off = INFINITY};
+    for (int i = 0; i < form->iterations; i++) {
+        if (decides(&decider, pair_norm2(z)))
+            decider.gradient = pair_gradient(z, d);
+        Pair to = {apply(form, z.a), apply(form, z.b)};
+        Complex da = apply_slope(form, z.a, to.a), db = apply_slope(form, z.b, to.b);
+        for (int k = 0; k < 3; k++)
+            d[k] = (Pair){da * d[k].a, db * d[k].b};
+        z = (Pair){to.a + c.a, to.b + c.b};
+    }
+    return is_last ? pair_gradient(z, d) : decider.gradient;
+}
+
+/* --- along a line --------------------------------------------------------------------------- */
+
+static Fate fate_of(const JuliaForm *form, V3 p)
+{
+    return form->is_hypercomplex ? pair_fate(form, p) : quaternion_fate(form, p);
+}
+
+/* A walk along a line: p = o + t d. */
+typedef struct JuliaWalk {
+    const Shape *shape;
+    const LocalRay *ray;
+    double in, out, speed; /* t within the ball around the set; |d| */
+    double slice_speed;    /* how much faster the fourth dimension may make it */
+} JuliaWalk;
+
+static bool walk_begin(JuliaWalk *walk, const Shape *shape, const LocalRay *ray)
+{
+    const JuliaForm *form = shape->u.julia;
+    double a = v3_len2(ray->d), base = -v3_dot(ray->o, ray->d) / a, radius = radius_of(form);
+    double room = radius * radius - v3_len2(v3_mad(ray->o, base, ray->d));
+    const double *n = form->slice;
+    if (!(room > 0))
+        return false;
+    double half = sqrt(room / a);
+    double tilt2 = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / (n[3] * n[3]);
+    *walk = (JuliaWalk){shape, ray, base - half, base + half, sqrt(a), sqrt(1 + tilt2)};
+    return true;
+}
+
+static Fate walk_at(const JuliaWalk *walk, double t)
+{
+    return fate_of(walk->shape->u.julia, v3_mad(walk->ray->o, t, walk->ray->d));
+}
+
+/* Find where a step went in or out. */
+static double halve(const JuliaWalk *walk, double lo, double hi, bool is_inside)
+{
+    for (int i = 0; i < HALVINGS; i++) {
+        double middle = 0.5 * (lo + hi);
+        if (!(middle > lo && middle < hi))
+            break;
+        if (walk_at(walk, middle).is_inside == is_inside)
+            lo = middle;
+        else
+            hi = middle;
+    }
+    return hi;
+}
+
+static void fill_crossing(const JuliaWalk *walk, double t, int8_t change, Crossing *out)
+{
+    double off = v3_sum_abs(local_error(walk->ray, t)) + 8 * PLACE_EPS;
+    LeafHit hit = {t, off / walk->speed + 4 * EPS_DOUBLE * fabs(t), 0, change, true};
+    crossing_fill(walk->shape, &hit, out);
+}
+
+/* Go from *t, whose state is told, to the next change of it before `end`; false: there is none. */
+static bool walk_on(const JuliaWalk *walk, double *t, double end, bool *is_inside)
+{
+    double least = STEP_PART / (walk->shape->u.julia->precision * walk->speed);
+    while (*t < end) {
+        double known = walk_at(walk, *t).distance / (walk->slice_speed * walk->speed);
+        double next = num_min(*t + num_max(known, least), end);
+        if (walk_at(walk, next).is_inside != *is_inside) {
+            *t = halve(walk, *t, next, *is_inside);
+            *is_inside = !*is_inside;
+            return true;
+        }
+        *t = next;
+    }
+    return false;
+}
+
+static bool julia_list(const Shape *shape, const Line *line, ShapeScratch *scratch)
+{
+    LocalRay local;
+    JuliaWalk walk;
+    Crossing crossing;
+    local_ray(shape, line->ray, &local);
+    if (!walk_begin(&walk, shape, &local))
+        return false;
+    double t = num_max(walk.in, line->near), end = num_min(walk.out, line->far);
+    bool is_inside = t < end && walk_at(&walk, t).is_inside, starts_in = is_inside;
+    if (starts_in && t == walk.in) {
+        fill_crossing(&walk, t, 1, &crossing);
+        scratch_push(scratch, &crossing);
+        starts_in = false;
+    }
+    while (walk_on(&walk, &t, end, &is_inside)) {
+        fill_crossing(&walk, t, is_inside ? 1 : -1, &crossing);
+        scratch_push(scratch, &crossing);
+    }
+    if (is_inside && end == walk.out) {
+        fill_crossing(&walk, end, -1, &crossing);
+        scratch_push(scratch, &crossing);
+    }
+    return starts_in;
+}
+
+static bool julia_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Crossing *out)
+{
+    LocalRay local;
+    JuliaWalk walk;
+    (void)scratch;
+    local_ray(shape, ray, &local);
+    if (!walk_begin(&walk, shape, &local))
+        return false;
+    double t = num_max(walk.in, ray->tmin), end = num_min(walk.out, ray->tmax);
+    bool is_inside = t < end && walk_at(&walk, t).is_inside;
+    if (!walk_on(&walk, &t, end, &is_inside) || !(t > ray->tmin && t < ray->tmax))
+        return false;
+    fill_crossing(&walk, t, is_inside ? 1 : -1, out);
+    return true;
+}
+
+/* --- the other operations ------------------------------------------------------------------- */
+
+static V3 normal_of(const JuliaForm *form, V3 p, double tilt, bool is_last)
+{
+    V3 n = form->is_hypercomplex ? pair_normal(form, p, tilt, is_last)
+                                 : quaternion_normal(form, p, tilt, is_last);
+    return v3_is_finite(n) ? v3_unit(n) : v3(0, 0, 0);
+}
+
+/* What is shown is the gradient after one iteration more than the surface is of, and as if the
+ * fourth coordinate did not change: so POV-Ray shades it. */
+static void julia_point(const Shape *shape, const Crossing *crossing, V3 p, LocalPoint *out)
+{
+    const JuliaForm *form = shape->u.julia;
+    V3 n = normal_of(form, p, 1, false), shown = normal_of(form, p, 0, true);
+    (void)crossing;
+    out->p = p;
+    out->ng = v3_len2(n) > 0 ? n : v3(1, 0, 0);
+    out->is_smooth = v3_len2(shown) > 0;
+    out->ns = v3_dot(shown, out->ng) < 0 ? v3_neg(shown) : shown;
+    out->error = POINT_ROUNDING * radius_of(form);
+}
+
+static bool julia_is_inside(const Shape *shape, V3 p)
+{
+    double radius = radius_of(shape->u.julia);
+    return v3_len2(p) <= radius * radius && fate_of(shape->u.julia, p).is_inside;
+}
+
+static Bound julia_bound(const Shape *shape)
+{
+    double r = radius_of(shape->u.julia);
+    Bound b = bound_pad((Bound){v3(-r, -r, -r), v3(r, r, r)});
+    return shape->is_transformed ? bound_pad(bound_transform(b, &shape->xform)) : b;
+}
+
+const ShapeOps julia_ops = {.list = julia_list,
+                            .closest = julia_closest,
+                            .point = julia_point,
+                            .is_inside = julia_is_inside,
+                            .bound = julia_bound};
