@@ -207,7 +207,7 @@ static void add_root(Solver *s, double x, double error)
 }
 
 /* Bound the error of the only root of [a, b]: as far from it the signs are certain. */
-static double error_of(const Solver *s, double x, double a, double b)
+static double error_of(const Solver *s, double x, double a, double b, int sign_b)
 {
     Value v = value_at(s, x);
     double step = 2 * (fabs(v.f) + v.error) / fabs(v.slope);
@@ -215,30 +215,31 @@ static double error_of(const Solver *s, double x, double a, double b)
     if (!(step > least))
         step = least;
     for (; step < b - a; step *= 2) {
-        int below = x - step <= a ? 2 : sign_at(s, x - step);
-        int above = x + step >= b ? 2 : sign_at(s, x + step);
-        if (below != 0 && above != 0 && below != above)
+        bool is_after = x - step <= a || sign_at(s, x - step) == -sign_b;
+        bool is_before = x + step >= b || sign_at(s, x + step) == sign_b;
+        if (is_after && is_before)
             return step;
     }
     return b - a;
 }
 
-/* Find the only root of [a, b] from a guess. */
+/* Find the only root of [a, b] from a guess: Halley's steps, each of which leaves about the cube of
+ * the error, in parts of the bracket; error_of says if it left more. */
 static void find_root(Solver *s, double a, double b, int sign_b, double x)
 {
-    double lo = a, hi = b;
+    double lo = a, hi = b, small = 0x1p-20 * (b - a);
     if (!(x > lo && x < hi))
         x = 0.5 * (lo + hi);
     for (int i = 0; i < 200; i++) {
-        Value v = value_at(s, x);
+        Value v = bend_at(s, x);
         if (v.f == 0)
             break;
         if ((v.f > 0) == (sign_b > 0))
             hi = x;
         else
             lo = x;
-        double step = v.f / v.slope, next = x - step;
-        bool is_done = fabs(step) <= EPS_DOUBLE * fabs(x) || fabs(v.f) <= 0.125 * v.error;
+        double step = v.f * v.slope / (v.slope * v.slope - v.f * v.bend), next = x - step;
+        bool is_done = fabs(step) <= small || fabs(v.f) <= 0.125 * v.error;
         bool is_kept = next > lo && next < hi;
         if (!is_kept || ((i & 7) == 7 && !is_done))
             next = 0.5 * (lo + hi);
@@ -248,7 +249,7 @@ static void find_root(Solver *s, double a, double b, int sign_b, double x)
         if (is_done)
             break;
     }
-    add_root(s, x, error_of(s, x, a, b));
+    add_root(s, x, error_of(s, x, a, b, sign_b));
 }
 
 /* Return where in a piece the polygon of its coefficients crosses zero. */

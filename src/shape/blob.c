@@ -91,7 +91,7 @@ typedef struct Sweep {
     const BlobData *blob;
     ShapeScratch *scratch;
     Stretch *stretches; /* the scratch's */
-    uint32_t count, next;
+    uint32_t count, next, capacity;
     uint32_t active_count;
     uint32_t *active; /* numbers of the ones that overlap here */
     V3 p, d, p_error; /* the line about t = 0 */
@@ -105,6 +105,18 @@ typedef struct Sweep {
     Crossing *first;
 } Sweep;
 
+/* Make room for twice as many stretches, and for their numbers behind them. */
+static bool grow(Sweep *s)
+{
+    uint32_t wanted = s->capacity ? 2 * s->capacity : 32;
+    void *room = scratch_room(s->scratch, wanted * (sizeof(Stretch) + sizeof(uint32_t)));
+    if (!room)
+        return false;
+    s->stretches = room;
+    s->capacity = wanted;
+    return true;
+}
+
 static void add_stretch(Sweep *s, const BlobComponent *c, V3 u, V3 w, double from, double to)
 {
     double bend = v3_len2(w), middle = bend > 0 ? -v3_dot(u, w) / bend : 0;
@@ -116,11 +128,8 @@ static void add_stretch(Sweep *s, const BlobComponent *c, V3 u, V3 w, double fro
     to = num_min(num_min(to, middle + half), s->far);
     if (!(from < to))
         return;
-    size_t room = (s->count + 1) * (sizeof(Stretch) + sizeof(uint32_t));
-    Stretch *stretches = scratch_room(s->scratch, room);
-    if (!stretches)
+    if (s->count == s->capacity && !grow(s))
         return;
-    s->stretches = stretches;
     double off = c->spread * (v3_sum_abs(s->p_error) + 8 * EPS_DOUBLE * v3_sum_abs(s->p)) +
                  8 * EPS_DOUBLE * c->offset;
     s->stretches[s->count++] = (Stretch){.strength = c->strength,
@@ -441,7 +450,7 @@ static void blob_point(const Shape *shape, const Crossing *crossing, V3 p, Local
     double reach =
         4 * crossing->t_error * v3_len(shape->rounding.row) + 16 * EPS_DOUBLE * v3_sum_abs(p);
     Value v = value_at(blob, p);
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3 && fabs(v.f) > v.error; i++) {
         double step = v.f / v3_len2(v.gradient);
         if (!(fabs(step) * v3_len(v.gradient) <= reach))
             break;

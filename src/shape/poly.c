@@ -357,7 +357,7 @@ static void poly_point(const Shape *shape, const Crossing *crossing, V3 p, Local
     const PolyData *poly = shape->u.poly;
     double reach = reach_of(shape, crossing, p);
     Value v = value_at(poly, p);
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 4 && fabs(v.f) > v.error; i++) {
         double step = v.f / v3_len2(v.gradient);
         if (!(fabs(step) * v3_len(v.gradient) <= reach))
             break;

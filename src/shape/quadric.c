@@ -9,17 +9,21 @@
 /* A determinant that is this small beside its terms says nothing. */
 #define FLAT 1e-9
 
-/* Q times a vector; is_abs: of all magnitudes. */
-static V3 square_times(const QuadricParams *q, V3 u, bool is_abs)
+/* Q times a vector. */
+static V3 square_times(const QuadricParams *q, V3 u)
 {
     V3 s = q->square, m = v3_scale(q->mixed, 0.5);
-    if (is_abs) {
-        s = v3_abs(s);
-        m = v3_abs(m);
-        u = v3_abs(u);
-    }
     return v3(s.x * u.x + m.x * u.y + m.y * u.z, m.x * u.x + s.y * u.y + m.z * u.z,
               m.y * u.x + m.z * u.y + s.z * u.z);
+}
+
+/* The magnitudes that errors are bounded by: no entry of Q times a vector is above square_size
+ * times the sum of the vector's magnitudes. */
+static void measure(QuadricParams *q)
+{
+    q->square_size = num_max(v3_max_abs(q->square), 0.5 * v3_max_abs(q->mixed));
+    q->linear_size = v3_max_abs(q->linear);
+    q->linear_doubt_size = v3_max_abs(q->linear_doubt);
 }
 
 /* The rows of the inverse of Q; false if it has none to speak of. */
@@ -40,12 +44,13 @@ static bool invert(const QuadricParams *q, V3 row[3])
 /* Move the origin of u to a place. */
 static void move_center(QuadricParams *q, V3 center)
 {
-    V3 half = square_times(q, center, false), size = square_times(q, center, true);
-    double away = v3_dot(v3_abs(center), size) + v3_dot(v3_abs(center), v3_abs(q->linear));
+    V3 half = square_times(q, center);
+    double far = v3_sum_abs(center), size = q->square_size * far;
     q->center = center;
-    q->doubt = 8 * EPS_DOUBLE * (away + fabs(q->constant));
+    q->doubt = 8 * EPS_DOUBLE * (far * (size + q->linear_size) + fabs(q->constant));
     q->constant += v3_dot(center, v3_add(half, q->linear));
-    q->linear_doubt = v3_scale(v3_add(v3_scale(size, 2), v3_abs(q->linear)), 4 * EPS_DOUBLE);
+    double doubt = 4 * EPS_DOUBLE * (2 * size + q->linear_size);
+    q->linear_doubt = v3(doubt, doubt, doubt);
     q->linear = v3_mad(q->linear, 2, half);
 }
 
@@ -57,28 +62,30 @@ Shape *shape_quadric(Arena *arena, V3 square, V3 mixed, V3 linear, double consta
     QuadricParams *q = &shape->u.quadric;
     *q = (QuadricParams){.square = square, .mixed = mixed, .linear = linear, .constant = constant};
     V3 row[3];
+    measure(q);
     if (invert(q, row) && v3_max_abs(linear) > 0) {
         V3 half = v3_scale(linear, -0.5);
         move_center(q, v3(v3_dot(row[0], half), v3_dot(row[1], half), v3_dot(row[2], half)));
+        measure(q);
     }
     leaf_place(shape, &XFORM_IDENTITY);
     return shape;
 }
 
-/* The value at u, its gradient, and a bound on the error of the value; u_error: that of u. */
+/* The value at u, its gradient, and a bound on the error of the value; off: that of u, summed over
+ * the axes. */
 typedef struct Value {
     double f, error;
     V3 gradient;
 } Value;
 
-static Value value_at(const QuadricParams *q, V3 u, V3 u_error)
+static Value value_at(const QuadricParams *q, V3 u, double off)
 {
-    V3 half = square_times(q, u, false), size = square_times(q, u, true), a = v3_abs(u);
-    double f = v3_dot(u, v3_add(half, q->linear)) + q->constant;
-    double terms = v3_dot(a, size) + v3_dot(a, v3_abs(q->linear)) + fabs(q->constant);
-    V3 slope = v3_add(v3_scale(size, 2), v3_abs(q->linear));
-    double error =
-        8 * EPS_DOUBLE * terms + q->doubt + v3_dot(a, q->linear_doubt) + v3_dot(slope, u_error);
+    V3 half = square_times(q, u);
+    double f = v3_dot(u, v3_add(half, q->linear)) + q->constant, far = v3_sum_abs(u);
+    double size = q->square_size * far;
+    double error = 8 * EPS_DOUBLE * (far * (size + q->linear_size) + fabs(q->constant)) + q->doubt +
+                   far * q->linear_doubt_size + (2 * size + q->linear_size) * off;
     return (Value){f, error, v3_mad(q->linear, 2, half)};
 }
 
@@ -88,15 +95,15 @@ static void quadric_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
     V3 from = v3_sub(ray->o, q->center);
     double base = -v3_dot(from, ray->d) / v3_len2(ray->d);
     V3 u = v3_mad(from, base, ray->d);
-    V3 u_error = v3_add(local_error(ray, base), v3_scale(v3_abs(q->center), 4 * EPS_DOUBLE));
-    Value v = value_at(q, u, u_error);
-    V3 turned = square_times(q, ray->d, false), size = square_times(q, ray->d, true);
-    V3 d = v3_abs(ray->d), slope = v3_add(v3_scale(square_times(q, u, true), 2), v3_abs(q->linear));
-    const double c[3] = {v.f, v3_dot(v.gradient, ray->d), v3_dot(ray->d, turned)};
+    double off = v3_sum_abs(local_error(ray, base)) + 4 * EPS_DOUBLE * v3_sum_abs(q->center);
+    double d = v3_sum_abs(ray->d), d_off = v3_sum_abs(ray->d_error), size = q->square_size;
+    double slope = 2 * size * v3_sum_abs(u) + q->linear_size;
+    Value v = value_at(q, u, off);
+    const double c[3] = {v.f, v3_dot(v.gradient, ray->d), v3_dot(ray->d, square_times(q, ray->d))};
     const double e[3] = {v.error,
-                         8 * EPS_DOUBLE * v3_dot(slope, d) + v3_dot(q->linear_doubt, d) +
-                             2 * v3_dot(size, u_error) + v3_dot(slope, ray->d_error),
-                         8 * EPS_DOUBLE * v3_dot(size, d) + 2 * v3_dot(size, ray->d_error)};
+                         d * (8 * EPS_DOUBLE * slope + q->linear_doubt_size + 2 * size * off) +
+                             slope * d_off,
+                         d * size * (8 * EPS_DOUBLE * d + 2 * d_off)};
     Root root[2];
     bool is_straight = fabs(c[2]) <= e[2];
     int count = roots_quadratic((double[]){c[0], c[1], is_straight ? 0 : c[2]}, e, root);
@@ -118,11 +125,11 @@ static void quadric_point(const Shape *shape, const Crossing *crossing, V3 p, Lo
 {
     (void)crossing;
     const QuadricParams *q = &shape->u.quadric;
-    V3 u = v3_sub(p, q->center), none = v3(0, 0, 0);
-    Value v = value_at(q, u, none);
-    for (int i = 0; i < 3; i++) {
+    V3 u = v3_sub(p, q->center);
+    Value v = value_at(q, u, 0);
+    for (int i = 0; i < 3 && fabs(v.f) > v.error; i++) {
         V3 next = v3_mad(u, -v.f / v3_len2(v.gradient), v.gradient);
-        Value better = value_at(q, next, none);
+        Value better = value_at(q, next, 0);
         if (!(fabs(better.f) < fabs(v.f)))
             break;
         u = next;
@@ -143,7 +150,7 @@ static void quadric_point(const Shape *shape, const Crossing *crossing, V3 p, Lo
 static bool quadric_is_inside(const Shape *shape, V3 p)
 {
     const QuadricParams *q = &shape->u.quadric;
-    return value_at(q, v3_sub(p, q->center), v3(0, 0, 0)).f <= 0;
+    return value_at(q, v3_sub(p, q->center), 0).f <= 0;
 }
 
 /* Is Q positive for all vectors? */

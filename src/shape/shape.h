@@ -84,6 +84,7 @@ typedef struct QuadricParams {
     V3 center;       /* where the gradient is 0, or the origin */
     V3 linear_doubt; /* bounds on the rounding of what was moved to the centre */
     double doubt;
+    double square_size, linear_size, linear_doubt_size; /* of the matrix and the vectors */
 } QuadricParams;
 
 typedef struct SuperParams {
