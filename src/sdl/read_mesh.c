@@ -371,6 +371,9 @@ static void read_face_textures(Parser *p, const MeshDraft *d, uint32_t out[3])
         TokenKind kind = parse_peek(p)->kind;
         if (kind == TOKEN_LESS || kind == TOKEN_RBRACE || !parse_is_expression(p))
             break;
+        /* Without a texture_list a name is that of the next vector. */
+        if (d->texture_count == 0 && kind != TOKEN_NUMBER)
+            break;
         Span span = parse_peek(p)->span;
         long index = parse_int(p, "the texture index of a face", 0, MESH_ITEMS_MAX);
         if ((uint32_t)index >= d->texture_count)

@@ -9,8 +9,8 @@ seconds=${1:-60}
 targets=${*:-$(ls tests/fuzz/*_fuzz.c | sed 's,.*/,,; s,_fuzz.c,,')}
 make -s MODE=fuzz CC=clang CXX=clang++ OPT_fuzz='-O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=undefined -DARENA_PARANOID' \
     WARN= CWARN= build/fuzz/libpms.a
-packages='OpenEXR OpenColorIO libpng libjpeg'
-flags="$(pkg-config --libs $packages) -lembree3 -lm -lstdc++ -lpthread"
+packages='OpenEXR OpenColorIO libpng libjpeg libtiff-4 freetype2'
+flags="$(pkg-config --libs $packages) -lembree3 -lgif -lm -lstdc++ -lpthread"
 # every word and mark of the language, for the mutations
 sed -n 's/^X([A-Z_0-9]*, "\([a-z_0-9]*\)".*/"\1"/p' src/sdl/keywords.def >build/fuzz/scene.dict
 printf '"#"\n"\\"text\\""\n"<1,2,3>"\n"<="\n">="\n"!="\n"/*"\n"*/"\n"//"\n"{"\n"}"\n' >>build/fuzz/scene.dict

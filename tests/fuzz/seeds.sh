@@ -18,4 +18,14 @@ exr | png)
     done
     rm "$folder/seed.pms"
     ;;
+bitmap) # the first byte is the kind, as bitmap.h counts them
+    { printf '\004'; cat tests/lang/image_file/small.pgm; } >"$folder/pnm"
+    printf '\005\0\0\012\0\0\0\0\0\0\0\0\0\002\0\002\0\030\0\203abc' >"$folder/tga"
+    printf '\010#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\nabcdefgh' >"$folder/hdr"
+    ;;
+font)
+    for file in /usr/share/povray-3.*/include/*.ttf; do
+        if [ -f "$file" ]; then cp "$file" "$folder"; fi
+    done
+    ;;
 esac

@@ -37,6 +37,7 @@ static void test_plain_vectors_are_what_expressions_are(void **state)
     (void)state;
     Scene *scene = scene_of(
         "#version 3.7;\n"
+        "#declare A = array[2] { <0,1,2>, <1,2,3> }\n"
         "mesh2 { vertex_vectors { 4, <0,0,.5>,<1.5e0,-0,0> , < +0.1 , 1 , -2.25E-1 >\n<1,1,1> }\n"
         "  normal_vectors { 2, <0,0,-1>,<0,.5,-1> } uv_vectors { 2, <0,0>,<1,.25> }\n"
         "  face_indices { 2, <0,1,2>,<1,2,3> } uv_indices { 2, <0,1,1>, <1,1,0> }\n"
@@ -53,7 +54,7 @@ static void test_plain_vectors_are_what_expressions_are(void **state)
         "mesh2 { vertex_vectors { 4, #if (1 < 2) <0,0,.5>, #end <1.5,0,0>\n"
         "    #local I = 0; #while (I < 1) , <.1,1,-.225> #local I = I + 1; #end, <1,1,1> }\n"
         "  normal_vectors { 2, <0,0,-1>,<0,.5,-1> } uv_vectors { 2, <0,0>,<1,.25> }\n"
-        "  face_indices { 2, <0,1,2> #if (1) , <1,2,3> #end } uv_indices { 2, <0,1,1>, <1,1,0> }\n"
+        "  face_indices { 2, A[0], A[1] } uv_indices { 2, <0,1,1>, <1,1,0> }\n"
         "  normal_indices { 1, <0,1,1> } inside_vector z }\n");
     assert_int_equal(scene->mesh_count, 4);
     const MeshData *a = scene->meshes[0];
