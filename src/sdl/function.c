@@ -13,6 +13,7 @@
 #include "sdl/parser_int.h"
 
 #include <math.h>
+#include <stdio.h>
 
 /* A sum or product of more terms is refused. */
 enum { FUNCTION_TERMS_MAX = 10000, INTERNAL_MAX = 78 };
@@ -25,6 +26,7 @@ typedef struct FunctionReader {
     TokenKind kind[FUNC_PARAMS_MAX];
     const char *text[FUNC_PARAMS_MAX]; /* of identifiers, interned */
     bool is_default;                   /* x, y, z; then u and v are x and y */
+    const char *missing;               /* what it calls that pms has not; NULL: nothing */
 } FunctionReader;
 
 static int full(FunctionReader *r);
@@ -169,6 +171,7 @@ static int series_call(FunctionReader *r, FuncOp op)
     add_name(&inner, &name);
     func_begin(inner.code, inner.count);
     int result = full(&inner);
+    r->missing = inner.missing;
     const Func *term = parse_no_null(r->p, func_end(r->p->arena, inner.code, result));
     if (!(last - first < FUNCTION_TERMS_MAX))
         parse_fail(r->p, bounds, "more than %d terms", FUNCTION_TERMS_MAX);
@@ -220,12 +223,28 @@ static int word_call(FunctionReader *r, Token word)
     }
 }
 
-/* Return the function of a value, or fail. */
-static const Func *callable(Parser *p, const Value *value, Span span)
+/* The code of a value that is a function, or fail where pms has it not. */
+const Func *function_code(Parser *p, const Value *value, Span span)
 {
     if (!value->node)
-        parse_fail(p, span, "pms has no `internal(%g)` yet", value->n[0]);
+        parse_fail_not_yet(p, span, value->text);
     return value->node;
+}
+
+/* A call of what pms has not: the function that calls it is missing as well, but only a call of
+ * that from outside fails.  Include files define many that a scene does not use. */
+static int missing_call(FunctionReader *r, const Value *value)
+{
+    r->missing = value->text;
+    parse_expect(r->p, TOKEN_LPAREN, "the name of a function");
+    while (!parse_accept(r->p, TOKEN_RPAREN)) {
+        full(r);
+        if (parse_peek(r->p)->kind != TOKEN_RPAREN)
+            parse_expect(r->p, TOKEN_COMMA, "an argument");
+    }
+    while (parse_accept(r->p, TOKEN_DOT))
+        parse_next(r->p);
+    return constant(r, 0);
 }
 
 static const char *plural(int count)
@@ -235,7 +254,9 @@ static const char *plural(int count)
 
 static int function_call(FunctionReader *r, const Value *value, Span name)
 {
-    const Func *callee = callable(r->p, value, name);
+    if (!value->node)
+        return missing_call(r, value);
+    const Func *callee = function_code(r->p, value, name);
     int arguments[FUNC_PARAMS_MAX];
     parse_expect(r->p, TOKEN_LPAREN, "the name of a function");
     for (int i = 0; i < callee->param_count; i++) {
@@ -389,13 +410,35 @@ static bool begins_other(TokenKind kind)
     return kind == KW_PIGMENT || kind == KW_PATTERN || kind == KW_TRANSFORM || kind == KW_SPLINE;
 }
 
+/* Function { pattern { ... } } and its like: skipped. */
+static void skip_other(Parser *p, Value *out)
+{
+    *out = (Value){.kind = VALUE_FUNCTION,
+                   .text = "function { pigment, pattern, transform or spline }"};
+    for (int depth = 0; depth > 0 || parse_peek(p)->kind != TOKEN_RBRACE;) {
+        Token token = parse_next(p);
+        if (token.kind == TOKEN_END)
+            parse_fail(p, token.span, "`}` wanted after the function, found the end");
+        depth += (token.kind == TOKEN_LBRACE) - (token.kind == TOKEN_RBRACE);
+    }
+}
+
+static const char *name_internal(Parser *p, int number)
+{
+    char *text = value_alloc(p, sizeof "internal(999)");
+    snprintf(text, sizeof "internal(999)", "internal(%d)", number);
+    return text;
+}
+
 /* internal(N): pms makes those it has as if they were written in the language. */
 static void read_internal(Parser *p, Value *out)
 {
     parse_next(p);
     parse_expect(p, TOKEN_LPAREN, "internal");
     int number = (int)parse_int(p, "the number of an internal function", 0, INTERNAL_MAX);
-    *out = (Value){.kind = VALUE_FUNCTION, .n = {number}, .node = function_internal(p, number)};
+    *out = (Value){.kind = VALUE_FUNCTION,
+                   .text = name_internal(p, number),
+                   .node = function_internal(p, number)};
     parse_expect(p, TOKEN_RPAREN, "the number");
 }
 
@@ -406,7 +449,7 @@ static void read_body(FunctionReader *r, Value *out)
     func_begin(&code, r->count);
     int result = full(r);
     const Func *func = parse_no_null(r->p, func_end(parse_arena(r->p), &code, result));
-    *out = (Value){.kind = VALUE_FUNCTION, .node = func};
+    *out = (Value){.kind = VALUE_FUNCTION, .text = r->missing, .node = r->missing ? NULL : func};
 }
 
 /* Read a function from its parameters on. */
@@ -417,8 +460,8 @@ static void read_function(Parser *p, Value *out)
     parse_expect(p, TOKEN_LBRACE, "function");
     const Token *first = parse_peek(p);
     if (begins_other(first->kind))
-        parse_fail_not_yet(p, first->span, "function { pigment, pattern, transform or spline }");
-    if (first->kind == KW_INTERNAL)
+        skip_other(p, out);
+    else if (first->kind == KW_INTERNAL)
         read_internal(p, out);
     else
         read_body(&r, out);
@@ -447,7 +490,7 @@ void parse_grid_function(Parser *p, long most, int *columns, int *rows, Value *o
 
 void parse_function_call(Parser *p, const Value *function, Span name, Terms *out)
 {
-    const Func *func = callable(p, function, name);
+    const Func *func = function_code(p, function, name);
     double arguments[FUNC_PARAMS_MAX];
     HoldState hold = hold_aside(p);
     parse_expect(p, TOKEN_LPAREN, "the name of a function");

@@ -281,6 +281,8 @@ void parse_function(Parser *p, Value *out);
 void parse_grid_function(Parser *p, long most, int *columns, int *rows, Value *out);
 /* Work out a call of a function whose name has been taken. */
 void parse_function_call(Parser *p, const Value *function, Span name, Terms *out);
+/* Return the code of a function, or fail where pms has it not. */
+const Func *function_code(Parser *p, const Value *value, Span span);
 /* Return the function of the language's library that has this number, or NULL: pms has it not
  * yet. */
 const Func *function_internal(Parser *p, int number);

@@ -68,9 +68,7 @@ static const Func *read_surface_function(Parser *p, Span *span)
     *span = parse_peek(p)->span;
     parse_function(p, &value);
     *span = span_join(*span, parse_last_span(p));
-    const Func *func = value.node;
-    if (!func)
-        parse_fail(p, *span, "pms has no `internal(%g)` yet", value.n[0]);
+    const Func *func = function_code(p, &value, *span);
     if (func->param_count != 3)
         parse_fail(p, *span, "an isosurface wants a function of 3 parameters, this has %d",
                    func->param_count);

@@ -38,7 +38,7 @@ typedef enum ValueKind {
     VALUE_DENSITY_MAP, /* node: const Density, of which only the map counts */
     VALUE_FOG,       /* node: const Fog */
     VALUE_RAINBOW,   /* node: const Rainbow */
-    VALUE_FUNCTION,  /* node: const Func (math/func.h), or NULL: internal function n[0] */
+    VALUE_FUNCTION,  /* node: const Func (math/func.h), or NULL: pms has not what text names */
     VALUE_KIND_COUNT
 } ValueKind;
 
