@@ -93,12 +93,13 @@ typedef struct Sweep {
     Stretch *stretches; /* the scratch's */
     uint32_t count, next, capacity;
     uint32_t active_count;
-    uint32_t *active; /* numbers of the ones that overlap here */
-    V3 p, d, p_error; /* the line about t = 0 */
-    double near, far; /* of what is wanted */
-    double base;      /* t of the ray for 0 here */
-    bool is_first;    /* only the first crossing is wanted */
-    bool is_beyond;   /* the state where there are no fields */
+    uint32_t *active;  /* numbers of the ones that overlap here */
+    V3 p, d, p_error;  /* the line about t = 0 */
+    double tmin, tmax; /* of what is wanted, in the ray's t */
+    double near, far;  /* of what is wanted */
+    double base;       /* t of the ray for 0 here */
+    bool is_first;     /* only the first crossing is wanted */
+    bool is_beyond;    /* the state where there are no fields */
     bool is_inside, is_inside_before;
     bool is_done;
     const Shape *shape;
@@ -217,7 +218,7 @@ static void cross(Sweep *s, double t, double error)
     crossing_fill(s->shape, &hit, &crossing);
     if (!s->is_first) {
         scratch_push(s->scratch, &crossing);
-    } else if (t > s->near && t < s->far) {
+    } else if (at > s->tmin && at < s->tmax) {
         *s->first = crossing;
         s->is_done = true;
     }
@@ -361,6 +362,8 @@ static bool follow(Sweep *s, const Shape *shape, const Ray *ray, double near, do
     s->p = v3_mad(l.o, s->base, l.d);
     s->p_error = local_error(&l, s->base);
     s->d = l.d;
+    s->tmin = near;
+    s->tmax = far;
     s->near = near - s->base;
     s->far = far - s->base;
     s->is_beyond = s->is_inside = s->is_inside_before = blob->threshold < 0;

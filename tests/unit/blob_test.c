@@ -142,6 +142,12 @@ static void check_line(const Shape *s, const BlobComponent *c, uint32_t count, d
             assert_true(shape_is_inside(s, ray_at(ray, t)) == is_inside);
         }
     }
+    /* Going on from each finds the next. */
+    Ray walk = {ray->o, ray->d, -100, INFINITY};
+    Crossing at;
+    int steps = 0;
+    for (; shape_closest(s, &walk, scratch, &at); steps++, walk.tmin = at.t)
+        assert_true(at.t > walk.tmin && steps < 1000);
     /* The first one alone. */
     Ray from = {ray->o, ray->d, 0, INFINITY};
     Crossing first;
