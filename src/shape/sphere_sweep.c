@@ -270,6 +270,8 @@ static bool is_proved(const SpanView *v, SweepEnd end, double from, double to)
     }
     bernstein_add_product(off, off, n, 1, power);
     double slack = 0x1p-40 * size;
+    if (!isfinite(slack)) /* numbers too large to be asked */
+        return true;
     for (int side = 0; side < 2; side++) {
         if (side ? end.u >= to : end.u <= from)
             continue;

@@ -210,11 +210,30 @@ static void test_probes(void **state)
     assert_true(shape_is_inside(sweep_of(SPLINE_LINEAR, wide, 2), v3(.5, 0, 0)));
 }
 
+/* Numbers whose squares overflow: any answer will do, but soon. */
+static void test_huge(void **state)
+{
+    (void)state;
+    double huge[5][4];
+    for (int i = 0; i < 5; i++)
+        for (int k = 0; k < 4; k++)
+            huge[i][k] = bend[i][k] * 1e150;
+    Shape *shape = sweep_of(SPLINE_CUBIC, (const double(*)[4])huge, 5);
+    Rng rng = rng_at(9, 9, 9);
+    for (int i = 0; i < 200; i++) {
+        V3 d = random_dir(&rng);
+        Ray ray = {v3_scale(d, -9e150), d, -INFINITY, INFINITY};
+        CrossList list;
+        shape_crossings(shape, &ray, scratch, &list);
+        assert_true(list.count < 64);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_linear), cmocka_unit_test(test_curved), cmocka_unit_test(test_joints),
-        cmocka_unit_test(test_points), cmocka_unit_test(test_probes),
+        cmocka_unit_test(test_points), cmocka_unit_test(test_huge),   cmocka_unit_test(test_probes),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
