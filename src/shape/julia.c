@@ -122,7 +122,9 @@ static double distance_of(const JuliaForm *form, double limit2, double n2, doubl
                           int number, double degree)
 {
     /* The potential is ln|z| / degree^number; that of the surface is what the last test asks. */
-    double rest = 0.5 * log(limit2) * pow(degree, number + 1 - form->iterations);
+    int left = number + 1 - form->iterations;
+    double share = degree == 2 ? ldexp(1, left) : pow(degree, left);
+    double rest = 0.5 * log(limit2) * share;
     double length = sqrt(n2), above = log(length) - rest;
     return above > 0 ? 0.5 * above * length / growth : 0;
 }
@@ -390,19 +392,21 @@ static void fill_crossing(const JuliaWalk *walk, double t, int8_t change, Crossi
     crossing_fill(walk->shape, &hit, out);
 }
 
-/* Go from *t, whose state is told, to the next change of it before `end`; false: there is none. */
-static bool walk_on(const JuliaWalk *walk, double *t, double end, bool *is_inside)
+/* Go from *t, whose fate is told, to the next change of it before `end`; false: there is none. */
+static bool walk_on(const JuliaWalk *walk, double *t, double end, Fate *fate)
 {
     double least = STEP_PART / (walk->shape->u.julia->precision * walk->speed);
     while (*t < end) {
-        double known = walk_at(walk, *t).distance / (walk->slice_speed * walk->speed);
+        double known = fate->distance / (walk->slice_speed * walk->speed);
         double next = num_min(*t + num_max(known, least), end);
-        if (walk_at(walk, next).is_inside != *is_inside) {
-            *t = halve(walk, *t, next, *is_inside);
-            *is_inside = !*is_inside;
+        Fate there = walk_at(walk, next);
+        if (there.is_inside != fate->is_inside) {
+            *t = halve(walk, *t, next, fate->is_inside);
+            *fate = (Fate){.is_inside = there.is_inside};
             return true;
         }
         *t = next;
+        *fate = there;
     }
     return false;
 }
@@ -416,17 +420,20 @@ static bool julia_list(const Shape *shape, const Line *line, ShapeScratch *scrat
     if (!walk_begin(&walk, shape, &local))
         return false;
     double t = num_max(walk.in, line->near), end = num_min(walk.out, line->far);
-    bool is_inside = t < end && walk_at(&walk, t).is_inside, starts_in = is_inside;
+    Fate fate = {.is_inside = false};
+    if (t < end)
+        fate = walk_at(&walk, t);
+    bool starts_in = fate.is_inside;
     if (starts_in && t == walk.in) {
         fill_crossing(&walk, t, 1, &crossing);
         scratch_push(scratch, &crossing);
         starts_in = false;
     }
-    while (walk_on(&walk, &t, end, &is_inside)) {
-        fill_crossing(&walk, t, is_inside ? 1 : -1, &crossing);
+    while (walk_on(&walk, &t, end, &fate)) {
+        fill_crossing(&walk, t, fate.is_inside ? 1 : -1, &crossing);
         scratch_push(scratch, &crossing);
     }
-    if (is_inside && end == walk.out) {
+    if (fate.is_inside && end == walk.out) {
         fill_crossing(&walk, end, -1, &crossing);
         scratch_push(scratch, &crossing);
     }
@@ -442,10 +449,12 @@ static bool julia_closest(const Shape *shape, const Ray *ray, ShapeScratch *scra
     if (!walk_begin(&walk, shape, &local))
         return false;
     double t = num_max(walk.in, ray->tmin), end = num_min(walk.out, ray->tmax);
-    bool is_inside = t < end && walk_at(&walk, t).is_inside;
-    if (!walk_on(&walk, &t, end, &is_inside) || !(t > ray->tmin && t < ray->tmax))
+    if (!(t < end))
         return false;
-    fill_crossing(&walk, t, is_inside ? 1 : -1, out);
+    Fate fate = walk_at(&walk, t);
+    if (!walk_on(&walk, &t, end, &fate) || !(t > ray->tmin && t < ray->tmax))
+        return false;
+    fill_crossing(&walk, t, fate.is_inside ? 1 : -1, out);
     return true;
 }
 
