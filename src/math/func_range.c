@@ -561,19 +561,22 @@ static bool is_sure(FuncOp op)
     return op == FUNC_SELECT || op == FUNC_INT || (op >= FUNC_LESS && op <= FUNC_OR);
 }
 
+/* All but the choice have two numbers at most; of those that have one, both are that. */
 static Range sure_value(const FuncStep *step, const Range x[FUNC_FROM_MAX])
 {
-    if (!is_sure((FuncOp)step->op))
-        for (int i = 0; i < FUNC_FROM_MAX; i++)
-            if (may_be_none(x[i]))
-                return RANGE_ALL;
+    if (!is_sure((FuncOp)step->op) && (may_be_none(x[0]) || may_be_none(x[1])))
+        return RANGE_ALL;
     return mended(step_value(step, x));
 }
 
 static void take(const FuncStep *step, const Range *slots, Range x[FUNC_FROM_MAX])
 {
-    for (int i = 0; i < FUNC_FROM_MAX; i++)
-        x[i] = slots[step->from[i]];
+    x[0] = slots[step->from[0]];
+    x[1] = slots[step->from[1]];
+    if (step->op != FUNC_SELECT)
+        return;
+    x[2] = slots[step->from[2]];
+    x[3] = slots[step->from[3]];
 }
 
 Range func_range(const Func *func, const Range *arguments, FuncRanges *work)
