@@ -392,11 +392,6 @@ static Range step_value(const FuncStep *step, const Range x[FUNC_FROM_MAX])
 
 /* --- slopes ----------------------------------------------------------------------------------- */
 
-static Range sine_slope(Range a, Range slope)
-{
-    return times(cosine(a), slope);
-}
-
 /* 1 over the root of a range of squares. */
 static Range inverse_root(Range a)
 {
@@ -517,7 +512,7 @@ static Range step_slope(const FuncStep *step, const Range x[FUNC_FROM_MAX],
     case FUNC_ABS:
         return x[0].lo >= 0 ? s[0] : x[0].hi <= 0 ? negative(s[0]) : hull(s[0], negative(s[0]));
     case FUNC_SIN:
-        return sine_slope(x[0], s[0]);
+        return times(cosine(x[0]), s[0]);
     case FUNC_COS:
         return times(negative(sine(x[0])), s[0]);
     case FUNC_TAN:

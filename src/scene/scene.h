@@ -30,7 +30,7 @@ typedef struct PhotonFlags {
 typedef struct Surface {
     const Texture *texture;       /* never NULL after scene_check */
     const Texture *inner_texture; /* interior_texture, or NULL: as texture */
-    const Texture *const *mesh_textures; /* of a mesh with a texture list, else NULL */
+    const Texture *const *mesh_textures; /* of a mesh or blob with its own, else NULL */
     int mesh_texture_count;
     const Interior *interior;     /* never NULL after scene_check */
     PhotonFlags photons;

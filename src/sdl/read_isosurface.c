@@ -13,7 +13,6 @@ enum { SLOPE_POINTS = 24 };
 
 typedef struct IsosurfaceItems {
     const Func *func;
-    Span function;
     const Shape *container;
     double threshold;
     double max_gradient; /* 0: not given */
@@ -62,15 +61,15 @@ static double read_positive(Parser *p, const char *what, Span *span)
     return value > 0 ? value : 0;
 }
 
-static const Func *read_surface_function(Parser *p, Span *span)
+static const Func *read_surface_function(Parser *p)
 {
     Value value;
-    *span = parse_peek(p)->span;
+    Span span = parse_peek(p)->span;
     parse_function(p, &value);
-    *span = span_join(*span, parse_last_span(p));
-    const Func *func = function_code(p, &value, *span);
+    span = span_join(span, parse_last_span(p));
+    const Func *func = function_code(p, &value, span);
     if (func->param_count != 3)
-        parse_fail(p, *span, "an isosurface wants a function of 3 parameters, this has %d",
+        parse_fail(p, span, "an isosurface wants a function of 3 parameters, this has %d",
                    func->param_count);
     return func;
 }
@@ -88,7 +87,7 @@ static bool read_item(Parser *p, IsosurfaceItems *items)
 {
     Span span;
     if (parse_peek(p)->kind == KW_FUNCTION)
-        items->func = read_surface_function(p, &items->function);
+        items->func = read_surface_function(p);
     else if (parse_peek(p)->kind == KW_CONTAINED_BY)
         items->container = read_container(p);
     else if (parse_accept(p, KW_THRESHOLD))
