@@ -164,7 +164,28 @@ $(B)/tests/bench/%_bench: $(B)/tests/bench/%_bench.o $(B)/libpms.a
 
 $(B)/tests/%_test: $(B)/tests/%_test.o $(B)/libpms.a
 	@echo "  link    $@"
-	$(Q)$(CC) $(OPT) -pthread $(LDFLAGS) -o $@ $^ $(LIBS) -lcmocka
+	$(Q)$(CC) $(OPT) -pthread $(LDFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LIBS) -lcmocka
+
+# The geometry a second time, in quad precision: one object, of which only its table of functions is
+# seen from outside (tests/hard/quad_world.h).
+QUADSRC  := $(wildcard src/math/*.c src/accel/*.c src/shape/*.c) tests/hard/quad_world.c \
+            tests/hard/quad_shapes.c
+QUADOBJ  := $(QUADSRC:%.c=$(B)/quad/%.o)
+QUADFLAGS = -std=c17 -D_POSIX_C_SOURCE=200809L -Isrc -include tests/hard/quad_real.h -O2 -g -pthread \
+            -ffp-contract=off -fno-math-errno -fno-trapping-math \
+            -Wall -Wextra -Wconversion -Wno-psabi $(if $(WERROR),-Werror)
+
+$(B)/quad/%.o: %.c
+	@echo "  quad    $<"
+	$(Q)mkdir -p $(@D)
+	$(Q)$(CC) $(QUADFLAGS) -MMD -MP -c -o $@ $<
+
+$(B)/quad_geometry.o: $(QUADOBJ)
+	@echo "  link    $@"
+	$(Q)$(LD) -r -o $@ $^ && objcopy --keep-global-symbol=quad_world $@
+
+$(B)/tests/hard/quad_test: $(B)/tests/hard/quad_world.o $(B)/tests/hard/quad_shapes.o \
+            $(B)/tests/hard/quad_rays.o $(B)/quad_geometry.o
 
 TARGET    = $(DESTDIR)$(PREFIX)
 INSTALLED = $(TARGET)/bin/pms $(patsubst stdlib/%,$(TARGET)/share/pms/%,$(wildcard stdlib/*)) \

@@ -6,10 +6,13 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "math/bernstein.h"
 
+#include "math/eps.h"
+
+#include <float.h>
 #include <math.h>
 
 /* Halvings until a double root is given up: its halves then differ by rounding alone. */
-enum { DEPTH_MAX = 32 };
+enum { DEPTH_MAX = (DBL_MANT_DIG + 11) / 2 };
 
 typedef struct RootList {
     double *out;
@@ -159,12 +162,14 @@ void bernstein_add_product(const double *a, const double *b, int degree, double 
         out[3] += factor * (0.5 * (a[1] * b[2] + a[2] * b[1]));
         out[4] += factor * (a[2] * b[2]);
     } else {
+        const double unit = 1, fifth = unit / 5, fifths = 3 * unit / 5; /* with all digits */
+        const double outer = unit / 20, inner = 9 * unit / 20;
         out[0] += factor * (a[0] * b[0]);
         out[1] += factor * (0.5 * (a[0] * b[1] + a[1] * b[0]));
-        out[2] += factor * (0.2 * (a[0] * b[2] + a[2] * b[0]) + 0.6 * (a[1] * b[1]));
+        out[2] += factor * (fifth * (a[0] * b[2] + a[2] * b[0]) + fifths * (a[1] * b[1]));
         out[3] +=
-            factor * (0.05 * (a[0] * b[3] + a[3] * b[0]) + 0.45 * (a[1] * b[2] + a[2] * b[1]));
-        out[4] += factor * (0.2 * (a[1] * b[3] + a[3] * b[1]) + 0.6 * (a[2] * b[2]));
+            factor * (outer * (a[0] * b[3] + a[3] * b[0]) + inner * (a[1] * b[2] + a[2] * b[1]));
+        out[4] += factor * (fifth * (a[1] * b[3] + a[3] * b[1]) + fifths * (a[2] * b[2]));
         out[5] += factor * (0.5 * (a[2] * b[3] + a[3] * b[2]));
         out[6] += factor * (a[3] * b[3]);
     }
@@ -221,7 +226,7 @@ ALWAYS_INLINE double find_of_degree(const double *b, int degree)
             step = next - x;
         }
         x = next;
-        if (fabs(step) <= 0x1p-26)
+        if (step * step <= 2 * EPS_DOUBLE)
             break;
     }
     /* The last step, with all digits. */

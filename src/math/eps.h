@@ -6,10 +6,11 @@
 #ifndef PMS_MATH_EPS_H
 #define PMS_MATH_EPS_H
 
+#include <float.h>
 #include <math.h>
 
 /* Half an ulp of 1: the relative error of one rounded double operation. */
-#define EPS_DOUBLE 0x1p-53
+#define EPS_DOUBLE (DBL_EPSILON / 2)
 
 /* Half an ulp of 1 in float: the relative error of rounding a double to float. */
 #define EPS_FLOAT 0x1p-24

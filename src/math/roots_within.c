@@ -17,13 +17,13 @@
 #include <stddef.h>
 
 /* A value, and a bound on its error. */
-typedef double Pair __attribute__((vector_size(16)));
+typedef double Pair __attribute__((vector_size(2 * sizeof(double))));
 #define PAIR(value, error) ((Pair){(value), (error)})
 
 enum {
     TERMS_MAX = ROOTS_DEGREE_MAX + 1,
     FRESH_DEPTH = 6, /* halvings for whose rounding the first coefficients allow */
-    DEPTH_MAX = 60,
+    DEPTH_MAX = DBL_MANT_DIG + 7,
     CUTS_MAX = 40 /* for each degree */
 };
 

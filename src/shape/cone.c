@@ -67,7 +67,8 @@ static void chord_hits(const Chord *chord, LeafHits *out)
 /* The wall x^2 + y^2 = (radius + growth z)^2 along a line: a h^2 + 2 b h + c < 0 inside. */
 typedef struct Wall {
     double a, b, c, disc;
-    double doubt; /* bound on the error of the left side near a root */
+    double doubt;      /* bound on the error of the left side near a root */
+    double disc_doubt; /* and of computing disc */
 } Wall;
 
 static double growth_of(const ConeParams *cone)
@@ -83,19 +84,22 @@ static Wall wall_of(const ConeParams *cone, V3 f, V3 d, V3 error)
     double cross = f.x * d.y - f.y * d.x;
     double g = sqrt(gx * gx + gy * gy);
     double most = num_max(cone->bottom, cone->top);
+    double terms = fabs(radius) * (fabs(d.x) + fabs(d.y)) + fabs(k) * (fabs(f.x) + fabs(f.y)) +
+                   fabs(f.x * d.y) + fabs(f.y * d.x);
     Wall w = {.a = d.x * d.x + d.y * d.y - k * k,
               .b = f.x * d.x + f.y * d.y - k * radius,
               .c = f.x * f.x + f.y * f.y - radius * radius,
-              .disc = (g - fabs(cross)) * (g + fabs(cross))};
+              .disc = (g - fabs(cross)) * (g + fabs(cross)),
+              .disc_doubt = 12 * EPS_DOUBLE * terms * (g + fabs(cross))};
     w.doubt = 2 * most * (error.x + error.y + fabs(growth) * error.z + 4 * PLACE_EPS * most);
     return w;
 }
 
-/* Bound the error of a root of the wall. */
-static double root_error(const Wall *w)
+/* Bound the error of a root of the wall; per_root: how much it moves with the root of disc. */
+static double root_error(const Wall *w, double per_root)
 {
-    double root = sqrt(w->disc);
-    return num_min(w->doubt / root, sqrt(2 * w->doubt / fabs(w->a)));
+    double all = w->doubt + w->disc_doubt / fabs(w->a), touching = sqrt(2 * all / fabs(w->a));
+    return num_min((w->doubt + per_root * w->disc_doubt) / sqrt(w->disc), touching);
 }
 
 /* Cut the chord at t, from above or below. */
@@ -118,10 +122,13 @@ static bool cut_wall(Chord *chord, const Wall *w, double base)
     if (!(w->disc > 0))
         return w->a < 0 || (w->a == 0 && w->c < 0);
     double root = sqrt(w->disc), q = -(w->b + copysign(root, w->b));
-    double h0 = q / w->a, h1 = w->c / q, own = root_error(w) + 4 * EPS_DOUBLE * fabs(base);
-    double first = base + num_min(h0, h1), last = base + num_max(h0, h1);
-    double first_error = own + 4 * EPS_DOUBLE * fabs(first);
-    double last_error = own + 4 * EPS_DOUBLE * fabs(last);
+    double h0 = q / w->a, h1 = w->c / q, own = 4 * EPS_DOUBLE * fabs(base);
+    double t0 = base + h0, t1 = base + h1;
+    double e0 = own + 4 * EPS_DOUBLE * fabs(t0) + root_error(w, fabs(1 / w->a));
+    double e1 = own + 4 * EPS_DOUBLE * fabs(t1) + root_error(w, fabs(h1 / q));
+    bool is_swapped = h1 < h0;
+    double first = is_swapped ? t1 : t0, first_error = is_swapped ? e1 : e0;
+    double last = is_swapped ? t0 : t1, last_error = is_swapped ? e0 : e1;
     if (w->a > 0) {
         cut_in(chord, first, first_error);
         cut_out(chord, last, last_error);
@@ -134,12 +141,10 @@ static bool cut_wall(Chord *chord, const Wall *w, double base)
         else
             cut_in(chord, last, last_error);
     } else { /* along the wall: one root */
-        double only = base + h1;
-        double error = own + 4 * EPS_DOUBLE * fabs(only);
         if (w->b > 0)
-            cut_out(chord, only, error);
+            cut_out(chord, t1, e1);
         else
-            cut_in(chord, only, error);
+            cut_in(chord, t1, e1);
     }
     return chord->in.t < chord->out.t;
 }
@@ -150,8 +155,9 @@ static void cone_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
     out->count = 0;
     out->is_inside_before = false;
     V3 o = v3(ray->o.x, ray->o.y, ray->o.z - 0.5 * cone->height);
-    double base = -v3_dot(o, ray->d) / v3_len2(ray->d);
-    V3 f = v3_mad(ray->o, base, ray->d), error = local_error(ray, base);
+    double speed2 = v3_len2(ray->d), base = -v3_dot(o, ray->d) / speed2;
+    double reach = (num_max(cone->bottom, cone->top) + 0.5 * cone->height) / sqrt(speed2);
+    V3 f = v3_mad(ray->o, base, ray->d), error = local_error(ray, fabs(base) + reach);
     Chord chord = CHORD_LINE;
     if (!cut_slab(&chord, ray->o.z, ray->d.z, error.z + PLACE_EPS * cone->height, 0, cone->height,
                   1, 2, !shape->is_open))

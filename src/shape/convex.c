@@ -85,28 +85,32 @@ static bool cut_by_leaf(const Shape *node, int child, const Ray *ray, ConvexCore
 static bool cut_by_planes(const Shape *node, const PlaneBlock *b, const Ray *ray, ConvexCore *core)
 {
     const V3 o = ray->o, d = ray->d;
-    Lanes x, y, z, distance, place;
+    Lanes x, y, z, distance, place, turn_doubt;
     memcpy(&x, b->n[0], sizeof x);
     memcpy(&y, b->n[1], sizeof y);
     memcpy(&z, b->n[2], sizeof z);
     memcpy(&distance, b->d, sizeof distance);
     memcpy(&place, b->place, sizeof place);
+    memcpy(&turn_doubt, b->turn_doubt, sizeof turn_doubt);
     Lanes height = x * o.x + y * o.y + z * o.z - distance;
     Lanes speed = x * d.x + y * d.y + z * d.z, t = -height / speed;
     Lanes at = LANES_ABS(x * o.x) + LANES_ABS(y * o.y) + LANES_ABS(z * o.z);
     Lanes per_t = LANES_ABS(x * d.x) + LANES_ABS(y * d.y) + LANES_ABS(z * d.z);
-    Lanes reach = LANES_ABS(t);
-    Lanes error =
-        (4 * EPS_DOUBLE * (at + reach * per_t) + place) / LANES_ABS(speed) + 2 * EPS_DOUBLE * reach;
+    Lanes reach = LANES_ABS(t), off = PLANE_EPS * at + turn_doubt * v3_sum_abs(o) + place;
+    Lanes speed_off = PLANE_EPS * per_t + turn_doubt * v3_sum_abs(d);
+    Lanes room = LANES_ABS(speed) - speed_off;
+    Lanes error = (off + reach * speed_off) / room + 2 * EPS_DOUBLE * reach;
+    LaneMask is_parallel = ~(room > (PLANE_STEEPNESS - 1) * speed_off);
     double entry = core->entry.child == NO_CONVEX ? -INFINITY : core->entry.lo;
     double exit = core->exit.child == NO_CONVEX ? INFINITY : core->exit.hi;
     LaneMask is_entry = speed < 0;
     /* A line along a plane gives no number here, and is looked at. */
     LaneMask is_idle = (is_entry & (t + error < entry)) | (~is_entry & (t - error > exit));
+    is_idle &= ~is_parallel;
     for (int k = 0; k < BLOCK; k++) {
         if (is_idle[k])
             continue;
-        if (!isfinite(t[k]) || speed[k] == 0) {
+        if (!isfinite(t[k]) || is_parallel[k]) {
             if (!cut_by_leaf(node, b->child[k], ray, core))
                 return false;
             continue;
@@ -166,6 +170,7 @@ void convex_pack_planes(Arena *arena, Shape *node)
             block->n[axis][next % BLOCK] = sign * v3_at(leaf->u.plane.normal, axis);
         block->d[next % BLOCK] = sign * leaf->u.plane.distance;
         block->place[next % BLOCK] = leaf->rounding.place;
+        block->turn_doubt[next % BLOCK] = leaf->u.plane.turn_doubt;
         block->child[next++ % BLOCK] = last;
     }
     node->planes = out;

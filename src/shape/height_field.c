@@ -26,8 +26,9 @@ Shape *shape_height_field(Arena *arena, const HeightData *data)
     if (!shape)
         return NULL;
     shape->u.height_field = data;
+    const double one = 1;
     Xform unit =
-        xform_scale(v3(1. / (data->columns - 1), 1. / HEIGHT_SCALE, 1. / (data->rows - 1)));
+        xform_scale(v3(one / (data->columns - 1), one / HEIGHT_SCALE, one / (data->rows - 1)));
     leaf_place(shape, &unit);
     return shape;
 }

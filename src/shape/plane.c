@@ -7,26 +7,27 @@ Shape *shape_plane(Arena *arena, V3 normal, double distance)
     Shape *shape = leaf_new(arena, SHAPE_PLANE);
     if (!shape)
         return NULL;
-    shape->u.plane = (PlaneParams){v3_unit(normal), distance};
+    shape->u.plane = (PlaneParams){.normal = v3_unit(normal), .distance = distance};
     leaf_place(shape, &XFORM_IDENTITY);
     return shape;
 }
 
 static void plane_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
 {
-    V3 n = shape->u.plane.normal;
-    double height = v3_dot(n, ray->o) - shape->u.plane.distance;
-    double speed = v3_dot(n, ray->d);
-    /* A line that runs in the plane to its last bit is parallel to it. */
-    out->is_inside_before = speed > 0 || (speed == 0 && height < 0);
+    const PlaneParams *plane = &shape->u.plane;
+    V3 n = plane->normal;
+    double height = v3_dot(n, ray->o) - plane->distance, speed = v3_dot(n, ray->d);
+    double at = v3_sum_abs(v3_mul(n, ray->o)), per_t = v3_sum_abs(v3_mul(n, ray->d));
+    double off = PLANE_EPS * at + plane->turn_doubt * v3_sum_abs(ray->o) + shape->rounding.place;
+    double speed_off = PLANE_EPS * per_t + plane->turn_doubt * v3_sum_abs(ray->d);
+    double t = -height / speed, room = fabs(speed) - speed_off;
     out->count = 0;
-    double t = -height / speed;
-    if (speed == 0 || !isfinite(t))
+    if (!(room > (PLANE_STEEPNESS - 1) * speed_off) || !isfinite(t)) {
+        out->is_inside_before = height < 0;
         return;
-    double a = fabs(n.x * ray->o.x) + fabs(n.y * ray->o.y) + fabs(n.z * ray->o.z);
-    double b = fabs(n.x * ray->d.x) + fabs(n.y * ray->d.y) + fabs(n.z * ray->d.z);
-    double error = (4 * EPS_DOUBLE * (a + fabs(t) * b) + shape->rounding.place) / fabs(speed) +
-                   2 * EPS_DOUBLE * fabs(t);
+    }
+    double error = (off + fabs(t) * speed_off) / room + 2 * EPS_DOUBLE * fabs(t);
+    out->is_inside_before = speed > 0;
     out->at[out->count++] = (LeafHit){t, error, 0, speed > 0 ? -1 : 1, true};
 }
 
@@ -36,7 +37,8 @@ static void plane_point(const Shape *shape, const Crossing *crossing, V3 p, Loca
     V3 n = shape->u.plane.normal;
     out->p = v3_mad(p, shape->u.plane.distance - v3_dot(n, p), n);
     out->ng = n;
-    out->error = shape->rounding.place + 4 * EPS_DOUBLE * v3_sum_abs(v3_mul(n, out->p));
+    out->error = shape->rounding.place + PLANE_EPS * v3_sum_abs(v3_mul(n, out->p)) +
+                 shape->u.plane.turn_doubt * v3_sum_abs(out->p);
 }
 
 static bool plane_is_inside(const Shape *shape, V3 p)
@@ -75,14 +77,30 @@ static Bound plane_bound(const Shape *shape)
 
 static double plane_size(const Shape *shape)
 {
-    return fabs(shape->u.plane.distance);
+    return fabs(shape->u.plane.distance) + shape->u.plane.place_doubt / PLACE_EPS;
+}
+
+/* The largest sum of the magnitudes of a column. */
+static double column_size(const double m[3][4])
+{
+    double most = 0;
+    for (int i = 0; i < 3; i++)
+        most = num_max(most, fabs(m[0][i]) + fabs(m[1][i]) + fabs(m[2][i]));
+    return most;
 }
 
 static bool plane_transform(Shape *shape, const Xform *x)
 {
     PlaneParams *plane = &shape->u.plane;
     V3 moved = v3(x->from[0][3], x->from[1][3], x->from[2][3]);
-    double length = xform_keeps_normals(x) ? x->from[0][0] : v3_len(xform_normal(x, plane->normal));
+    bool is_kept = xform_keeps_normals(x);
+    double length = is_kept ? x->from[0][0] : v3_len(xform_normal(x, plane->normal));
+    double by = v3_sum_abs(v3_mul(plane->normal, moved));
+    double terms = v3_max_abs(moved) > 0 ? fabs(plane->distance) + by : 0;
+    plane->place_doubt =
+        (plane->place_doubt + PLACE_EPS * terms + plane->turn_doubt * v3_sum_abs(moved)) / length;
+    if (!is_kept)
+        plane->turn_doubt = (plane->turn_doubt + PLACE_EPS) * column_size(x->from) / length;
     plane->distance = (plane->distance - v3_dot(plane->normal, moved)) / length;
     plane->normal = turn_normal(plane->normal, x);
     return true;

@@ -61,7 +61,7 @@ Shape *shape_poly(Arena *arena, int degree, const double *c)
 /* --- along a line -------------------------------------------------------------------------- */
 
 /* A number, its magnitude when all terms add up, and the same with the errors of x, y and z. */
-typedef double Trio __attribute__((vector_size(32)));
+typedef double Trio __attribute__((vector_size(4 * sizeof(double))));
 
 typedef struct Along {
     int degree; /* -1: zero */

@@ -58,6 +58,7 @@ typedef struct BoxParams {
 typedef struct PlaneParams {
     V3 normal; /* unit; inside is normal . p < distance.  Never transformed. */
     double distance;
+    double turn_doubt, place_doubt; /* bounds on the rounding that transforms brought */
 } PlaneParams;
 
 typedef struct ConeParams {
@@ -76,15 +77,21 @@ typedef struct OvusParams {
     double beyond;      /* how far that is beyond the axis */
 } OvusParams;
 
-typedef struct QuadricParams {
-    V3 square;       /* of x^2, y^2, z^2 */
-    V3 mixed;        /* of xy, xz, yz */
-    V3 linear;       /* these two about `center` */
+/* What is left of a quadric's terms about some place. */
+typedef struct QuadricPlace {
+    V3 center;
+    V3 linear;
     double constant;
-    V3 center;       /* where the gradient is 0, or the origin */
-    V3 linear_doubt; /* bounds on the rounding of what was moved to the centre */
-    double doubt;
-    double square_size, linear_size, linear_doubt_size; /* of the matrix and the vectors */
+    double linear_doubt, doubt; /* bounds on the rounding of the move there */
+    double linear_size;         /* of the vector */
+} QuadricPlace;
+
+typedef struct QuadricParams {
+    V3 square;             /* of x^2, y^2, z^2 */
+    V3 mixed;              /* of xy, xz, yz */
+    QuadricPlace place[2]; /* about the origin, and where the gradient is 0 */
+    int place_count;       /* 2 if there is such a place, not the origin */
+    double square_size;    /* of the matrix */
 } QuadricParams;
 
 typedef struct SuperParams {

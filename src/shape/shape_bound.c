@@ -47,8 +47,10 @@ static Bound union_reach(const Shape *shape, bool *is_inside_beyond)
 static Bound plane_reach(const Shape *shape)
 {
     PlaneParams plane = shape->u.plane;
-    if (shape->is_inverted)
-        plane = (PlaneParams){v3_neg(plane.normal), -plane.distance};
+    if (shape->is_inverted) {
+        plane.normal = v3_neg(plane.normal);
+        plane.distance = -plane.distance;
+    }
     return plane_inside_bound(&plane);
 }
 

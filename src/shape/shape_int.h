@@ -137,6 +137,11 @@ V3 circle_farthest(double radius, double z, V3 n);
 /* Return whether a ray meets a sphere with tmin < t < tmax. */
 bool sphere_is_met(const Shape *shape, const LocalRay *ray, double tmin, double tmax);
 
+/* Rounding of the product of a plane's normal with something, relative to its terms, and how much
+ * larger the product with a direction has to be than its error: a line less steep is parallel. */
+#define PLANE_EPS (8 * EPS_DOUBLE)
+enum { PLANE_STEEPNESS = 4 };
+
 /* Return the box around a plane's inside. */
 Bound plane_inside_bound(const PlaneParams *plane);
 
@@ -189,8 +194,8 @@ bool line_cut(Line *line, const Bound *box);
 
 /* BLOCK numbers computed with at once. */
 enum { BLOCK = 4 };
-typedef double Lanes __attribute__((vector_size(8 * BLOCK)));
-typedef int64_t LaneMask __attribute__((vector_size(8 * BLOCK)));
+typedef double Lanes __attribute__((vector_size(sizeof(double) * BLOCK)));
+typedef __typeof__((Lanes){0} < (Lanes){0}) LaneMask;
 #define LANES_PICK(mask, a, b) ((Lanes)(((mask) & (LaneMask)(a)) | (~(mask) & (LaneMask)(b))))
 #define LANES_ABS(x) LANES_PICK((x) < 0, -(x), (x))
 
@@ -203,7 +208,7 @@ struct ReachBlock {
 /* Planes among the children of an intersection, side by side; turned, so that the inside is
  * n . p < d.  The last ones of the last block repeat. */
 struct PlaneBlock {
-    double n[3][BLOCK], d[BLOCK], place[BLOCK];
+    double n[3][BLOCK], d[BLOCK], place[BLOCK], turn_doubt[BLOCK];
     int child[BLOCK];
 };
 
