@@ -24,7 +24,8 @@ enum { TILE = 8, PATCH = 16 };
 
 double error_scale(double luminance, double mean)
 {
-    return hypot(luminance, DARK_PART * mean);
+    double dark = DARK_PART * mean;
+    return sqrt(luminance * luminance + dark * dark);
 }
 
 /* The bin is made of the exponent and the first bits of the mantissa. */

@@ -123,6 +123,8 @@ static bool write_stream(PngJob *job, png_uint_32 width, png_uint_32 height, int
     png_init_io(job->png, job->file);
     png_set_user_limits(job->png, IMAGE_SIDE_MAX, IMAGE_SIDE_MAX);
     png_set_compression_level(job->png, PNG_LEVEL);
+    /* For renders these two make files as small as all five do, in less time. */
+    png_set_filter(job->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB | PNG_FILTER_UP);
     png_set_IHDR(job->png, job->info, width, height, bits,
                  channels == 4 ? PNG_COLOR_TYPE_RGBA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);

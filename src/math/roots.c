@@ -227,42 +227,33 @@ int roots_quartic(const double c[5], const double *c_error, Root out[4])
     return solve_degree(4, c, c_error, out);
 }
 
-/* Newton's method on y^3 + p y + q from a start on the convex side of the root, so that it never
- * overshoots. */
-static double newton_depressed(double p, double q, double y)
+/* The largest root of u^3 - 3 u = 2 k for k in [0, 1], which is 2 cos(acos(k) / 3): a parabola is
+ * within 1e-4 of it, and a step of Newton's squares that. */
+static double largest_of_three(double k)
 {
-    for (int i = 0; i < 60; i++) {
-        double slope = 3 * y * y + p;
-        double step = (y * (y * y + p) + q) / slope;
-        if (!isfinite(step))
-            break;
-        y -= step;
-        if (fabs(step) <= 1e-5 * fabs(y))
-            break;
-    }
-    return y;
+    double u = 1.7321 + k * (0.3333 - 0.0654 * k);
+    for (int i = 0; i < 2; i++)
+        u -= (u * (u * u - 3) - 2 * k) / (3 * (u * u - 1));
+    return u;
 }
 
 /* The roots of y^3 + p y + q. */
 static int solve_depressed(double p, double q, double out[3])
 {
-    double s = p < 0 ? sqrt(p / -3) : 0, limit = 2 * s * s * s, far = copysign(1, -q);
-    if (fabs(q) < limit) { /* three, within 2 s of 0 */
-        double largest = newton_depressed(p, q, far * 2 * s);
-        double middle = newton_depressed(p, q, -q / p);
-        double other = -(largest + middle);
-        out[0] = far > 0 ? other : largest;
-        out[1] = middle;
-        out[2] = far > 0 ? largest : other;
-        return 3;
+    double third = p / 3, half = 0.5 * fabs(q), disc = half * half + third * third * third;
+    if (!(disc < 0)) { /* Cardano's formula, without its difference */
+        double a = cbrt(half + sqrt(disc)), b = third / a;
+        out[0] = a > 0 ? -q / (a * a + third + b * b) : 0;
+        return 1;
     }
-    double start = cbrt(fabs(q));
-    if (p > 0)
-        start = num_min(start, fabs(q) / p);
-    else
-        start += 2 * s;
-    out[0] = newton_depressed(p, q, far * start);
-    return 1;
+    double s = sqrt(-third), side = q > 0 ? -1 : 1, k = num_min(1, half / (s * s * s));
+    /* Of the others, one is the larger root of what remains; the product of all gives the last. */
+    double u = num_min(2, largest_of_three(k)), far = -0.5 * (u + sqrt(3 * (4 - u * u)));
+    double largest = side * s * u, other = side * s * far, middle = side * s * (2 * k / (u * far));
+    out[0] = side > 0 ? other : largest;
+    out[1] = middle;
+    out[2] = side > 0 ? largest : other;
+    return 3;
 }
 
 int roots_cubic_rough(const double c[4], double out[3])

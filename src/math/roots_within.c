@@ -7,36 +7,22 @@
  * with a bound on its error, side by side so that both are computed at once.  What cannot be told
  * from zero is one root of odd or of even multiplicity, as the signs to both sides say.
  * SPDX-License-Identifier: Apache-2.0 */
-#include "math/roots.h"
+#include "math/roots_int.h"
 
-#include "math/eps.h"
 #include "math/v3.h"
 
 #include <float.h>
 #include <limits.h>
 #include <stddef.h>
 
-/* A value, and a bound on its error. */
-typedef double Pair __attribute__((vector_size(2 * sizeof(double))));
-#define PAIR(value, error) ((Pair){(value), (error)})
+/* Steps up to this part of x leave the bound on the error of a value as it is. */
+#define STEP_NEAR 0x1p-12
 
 enum {
-    TERMS_MAX = ROOTS_DEGREE_MAX + 1,
     FRESH_DEPTH = 6, /* halvings for whose rounding the first coefficients allow */
     DEPTH_MAX = DBL_MANT_DIG + 7,
     CUTS_MAX = 40 /* for each degree */
 };
-
-typedef struct Solver {
-    int degree, count, cuts, most;
-    bool is_negative;  /* at the lower end */
-    Pair c[TERMS_MAX]; /* lowest first; error: that of the coefficient and of its use in a sum */
-    double widening;   /* bounds for pieces are as much wider than those for places */
-    double spare;      /* what more a piece allows for, in parts of a coefficient */
-    double scale;      /* x of the caller for 1 here */
-    double lo, hi;     /* the interval */
-    Root *out;
-} Solver;
 
 typedef struct Piece {
     double a, b;        /* where it is, within [-1, 1] */
@@ -44,40 +30,6 @@ typedef struct Piece {
     int depth;
     Pair at[TERMS_MAX]; /* Bernstein coefficients */
 } Piece;
-
-typedef struct Value {
-    double f, slope, bend, error; /* error: bound on that of f */
-} Value;
-
-static Value value_at(const Solver *s, double x)
-{
-    Pair f = s->c[s->degree], way = PAIR(x, fabs(x));
-    double slope = 0;
-    for (int i = s->degree - 1; i >= 0; i--) {
-        slope = slope * x + f[0];
-        f = f * way + s->c[i];
-    }
-    return (Value){.f = f[0], .slope = slope, .error = f[1]};
-}
-
-/* The same with half of the second derivative. */
-static Value bend_at(const Solver *s, double x)
-{
-    Pair f = s->c[s->degree], way = PAIR(x, fabs(x));
-    double slope = 0, bend = 0;
-    for (int i = s->degree - 1; i >= 0; i--) {
-        bend = bend * x + slope;
-        slope = slope * x + f[0];
-        f = f * way + s->c[i];
-    }
-    return (Value){f[0], slope, bend, f[1]};
-}
-
-/* Return the sign of a value, or 0 where it is not certain. */
-static int sign_of(double value, double error)
-{
-    return value > error ? 1 : value < -error ? -1 : 0;
-}
 
 static int sign_at(const Solver *s, double x)
 {
@@ -198,7 +150,7 @@ static Changes slope_changes(const Solver *s, const Piece *piece)
 
 /* --- roots --------------------------------------------------------------------------------- */
 
-static void add_root(Solver *s, double x, double error)
+void solver_add(Solver *s, double x, double error)
 {
     if (s->count >= s->degree)
         return;
@@ -206,14 +158,25 @@ static void add_root(Solver *s, double x, double error)
     s->out[s->count++] = (Root){place, s->scale * error + 2 * EPS_DOUBLE * fabs(place)};
 }
 
-/* Bound the error of the only root of [a, b]: as far from it the signs are certain. */
-static double error_of(const Solver *s, double x, double a, double b, int sign_b)
+/* Are the signs certain a step to both sides, as the value and its derivatives say?  No: they may
+ * be all the same. */
+static bool is_step_sure(const Solver *s, const Value *v, double x, double step)
 {
-    Value v = value_at(s, x);
-    double step = 2 * (fabs(v.f) + v.error) / fabs(v.slope);
+    double bent = step * step * (fabs(v->bend) + 2 * s->third * step);
+    return step <= STEP_NEAR * fabs(x) && bent <= 0.25 * v->error &&
+           fabs(v->slope) * step >= 2 * (fabs(v->f) + v->error);
+}
+
+/* Bound the error of the only root of [a, b], where the polynomial has the value v: as far from it
+ * the signs are certain. */
+static double error_of(const Solver *s, const Value *v, double x, double a, double b, int sign_b)
+{
+    double step = 2 * (1 + EPS_DOUBLE) * (fabs(v->f) + v->error) / fabs(v->slope);
     double least = 2 * EPS_DOUBLE * fabs(x) + DBL_MIN;
     if (!(step > least))
         step = least;
+    if (is_step_sure(s, v, x, step))
+        return step;
     for (; step < b - a; step *= 2) {
         bool is_after = x - step <= a || sign_at(s, x - step) == -sign_b;
         bool is_before = x + step >= b || sign_at(s, x + step) == sign_b;
@@ -223,33 +186,29 @@ static double error_of(const Solver *s, double x, double a, double b, int sign_b
     return b - a;
 }
 
-/* Find the only root of [a, b] from a guess: Halley's steps, each of which leaves about the cube of
- * the error, in parts of the bracket; error_of says if it left more. */
-static void find_root(Solver *s, double a, double b, int sign_b, double x)
+/* Halley's steps, each of which leaves about the cube of the error, kept inside a bracket. */
+void solver_find(Solver *s, double a, double b, int sign_b, double x)
 {
-    double lo = a, hi = b, small = 0x1p-20 * (b - a);
+    double lo = a, hi = b;
+    Value v;
     if (!(x > lo && x < hi))
         x = 0.5 * (lo + hi);
-    for (int i = 0; i < 200; i++) {
-        Value v = bend_at(s, x);
-        if (v.f == 0)
+    for (int i = 0;; i++) {
+        v = bend_at(s, x);
+        if (fabs(v.f) <= v.error || i == 200)
             break;
         if ((v.f > 0) == (sign_b > 0))
             hi = x;
         else
             lo = x;
-        double step = v.f * v.slope / (v.slope * v.slope - v.f * v.bend), next = x - step;
-        bool is_done = fabs(step) <= small || fabs(v.f) <= 0.125 * v.error;
-        bool is_kept = next > lo && next < hi;
-        if (!is_kept || ((i & 7) == 7 && !is_done))
+        double next = x - v.f * v.slope / (v.slope * v.slope - v.f * v.bend);
+        if (!(next > lo && next < hi) || (i & 7) == 7)
             next = 0.5 * (lo + hi);
-        if (!(next > lo && next < hi) || (is_done && !is_kept))
+        if (!(next > lo && next < hi) || next == x)
             break;
         x = next;
-        if (is_done)
-            break;
     }
-    add_root(s, x, error_of(s, x, a, b, sign_b));
+    solver_add(s, x, error_of(s, &v, x, a, b, sign_b));
 }
 
 /* Return where in a piece the polygon of its coefficients crosses zero. */
@@ -303,15 +262,15 @@ static void solve_turn(Solver *s, const Piece *piece)
         return;
     if (sign != 0) {
         double away = sqrt(fabs(v.f / v.bend));
-        find_root(s, piece->a, x, sign, x - away);
-        find_root(s, x, piece->b, piece->sign_b, x + away);
+        solver_find(s, piece->a, x, sign, x - away);
+        solver_find(s, x, piece->b, piece->sign_b, x + away);
         return;
     }
     double error = sqrt(4 * v.error / fabs(v.bend)) + 2 * EPS_DOUBLE * fabs(x);
     if (!(error < piece->b - piece->a))
         error = piece->b - piece->a;
-    add_root(s, x, error);
-    add_root(s, x, error);
+    solver_add(s, x, error);
+    solver_add(s, x, error);
 }
 
 /* A piece that cannot be told from zero.  At an end of the interval it may be what lies beyond that
@@ -322,9 +281,9 @@ static void solve_zero(Solver *s, const Piece *piece)
     if (is_at_end && piece->sign_a == piece->sign_b)
         return;
     double x = 0.5 * (piece->a + piece->b), error = 0.5 * (piece->b - piece->a);
-    add_root(s, x, error);
+    solver_add(s, x, error);
     if (piece->sign_a == piece->sign_b)
-        add_root(s, x, error);
+        solver_add(s, x, error);
 }
 
 /* Decide on a piece if that can be done; false when it is to be cut. */
@@ -334,12 +293,12 @@ static bool solve_piece(Solver *s, const Piece *piece)
     if (f.most == 0)
         return true;
     if (f.most == 1) {
-        find_root(s, piece->a, piece->b, piece->sign_b, polygon_root(s, piece));
+        solver_find(s, piece->a, piece->b, piece->sign_b, polygon_root(s, piece));
         return true;
     }
     Changes slope = slope_changes(s, piece);
     if (slope.most == 0 && piece->sign_a != piece->sign_b) {
-        find_root(s, piece->a, piece->b, piece->sign_b, polygon_root(s, piece));
+        solver_find(s, piece->a, piece->b, piece->sign_b, polygon_root(s, piece));
         return true;
     }
     if (slope.most <= 1 && piece->sign_a == piece->sign_b) {
@@ -387,6 +346,7 @@ static bool solver_init(Solver *s, const double *c, const double *c_error, int d
 {
     double power = 1, most = 0;
     s->degree = degree;
+    s->third = 0;
     s->scale = num_max(fabs(lo), fabs(hi));
     s->lo = lo / s->scale;
     s->hi = hi / s->scale;
@@ -395,6 +355,7 @@ static bool solver_init(Solver *s, const double *c, const double *c_error, int d
         s->c[i] = PAIR(c[i] * power, (c_error ? c_error[i] * power : 0) +
                                          3 * (degree + 1) * EPS_DOUBLE * size + least);
         most = num_max(most, size);
+        s->third += size * (i * (i - 1) * (i - 2) / 6);
     }
     s->spare = (2 * FRESH_DEPTH * degree + 10) * EPS_DOUBLE;
     s->widening = 1 + s->spare / (3 * (degree + 1) * EPS_DOUBLE);
@@ -431,7 +392,7 @@ static double first_cut(const Solver *s)
 static void solve_whole(Solver *s)
 {
     s->is_negative = s->c[0][0] < 0;
-    if (is_never_zero(s))
+    if (is_never_zero(s) || (s->degree <= 4 && solver_monotone(s)))
         return;
     Piece piece;
     double cut = first_cut(s);

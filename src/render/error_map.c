@@ -80,27 +80,50 @@ static int clamped(int i, int end)
 }
 
 /* Average values over the pixels around each, as far as `reach`; at the border those that there
- * are count twice.  Along the rows, then along the columns: `lines` values of `step` apart. */
-static void average_lines(const float *from, float *to, int lines, int length, size_t line_step,
-                          size_t step, int reach)
+ * are count twice.  Along the rows, then down the columns, a row at once. */
+static void average_row(const float *in, float *out, int width, int reach)
 {
-    for (int line = 0; line < lines; line++) {
-        const float *in = from + (size_t)line * line_step;
-        float *out = to + (size_t)line * line_step;
-        for (int i = 0; i < length; i++) {
-            float sum = 0;
-            for (int k = i - reach; k <= i + reach; k++)
-                sum += in[(size_t)clamped(k, length) * step];
-            out[(size_t)i * step] = sum / (float)(2 * reach + 1);
-        }
+    float scale = (float)(2 * reach + 1);
+    for (int x = 0; x < width; x++) {
+        bool is_inner = x >= reach && x + reach < width;
+        float sum = 0;
+        for (int k = x - reach; k <= x + reach; k++)
+            sum += in[is_inner ? k : clamped(k, width)];
+        out[x] = sum / scale;
     }
+}
+
+static void average_rows(const float *in, float *out, int width, int height, int y, int reach)
+{
+    float scale = (float)(2 * reach + 1);
+    for (int x = 0; x < width; x++)
+        out[x] = 0;
+    for (int k = y - reach; k <= y + reach; k++) {
+        const float *row = in + (size_t)clamped(k, height) * (size_t)width;
+        for (int x = 0; x < width; x++)
+            out[x] += row[x];
+    }
+    for (int x = 0; x < width; x++)
+        out[x] /= scale;
+}
+
+static bool is_zero(const float *values, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (values[i] != 0)
+            return false;
+    return true;
 }
 
 static void average_around(float *values, float *scratch, int width, int height, int reach)
 {
     size_t row = (size_t)width;
-    average_lines(values, scratch, height, width, row, 1, reach);
-    average_lines(scratch, values, width, height, 1, row, reach);
+    if (is_zero(values, row * (size_t)height))
+        return;
+    for (int y = 0; y < height; y++)
+        average_row(values + (size_t)y * row, scratch + (size_t)y * row, width, reach);
+    for (int y = 0; y < height; y++)
+        average_rows(scratch, values + (size_t)y * row, width, height, y, reach);
 }
 
 /* --- the map -------------------------------------------------------------------------------- */
@@ -112,6 +135,8 @@ static void finish_bias(ErrorMap *map)
 {
     const float around = (2 * BIAS_REACH + 1) * (2 * BIAS_REACH + 1);
     size_t pixels = (size_t)map->width * (size_t)map->height;
+    if (is_zero(map->bias, pixels))
+        return;
     for (size_t i = 0; i < pixels; i++)
         map->spare[i] = map->bias[i] * map->bias[i];
     average_around(map->bias, map->scratch, map->width, map->height, BIAS_REACH);
@@ -281,25 +306,27 @@ double error_map_mean(const ErrorMap *map)
 }
 
 /* Fill an array with relative errors of so much of the noise and the bias; the one may add to the
- * other or take from it. */
-static void fill_errors(const ErrorMap *map, double noise, double bias, float *out)
+ * other or take from it.
+ *
+ * mean  luminance of the picture. */
+static void fill_errors(const ErrorMap *map, double mean, double noise, double bias, float *out)
 {
-    size_t width = (size_t)map->width, pixels = width * (size_t)map->height;
-    double mean = error_map_mean(map);
-    for (size_t i = 0; i < pixels; i++) {
-        double scale = error_scale((double)map->luminance[i], mean);
-        double sign = (5 * (i % width) + 3 * (i / width)) % 16 < 8 ? 1 : -1;
-        double error = noise * (double)map->noise[i] + sign * bias * (double)map->bias[i];
-        out[i] = (float)(scale > 0 ? fabs(error) / scale : 0);
-    }
+    size_t i = 0;
+    for (int y = 0; y < map->height; y++)
+        for (int x = 0; x < map->width; x++, i++) {
+            double scale = error_scale((double)map->luminance[i], mean);
+            double sign = (5 * x + 3 * y) % 16 < 8 ? 1 : -1;
+            double error = noise * (double)map->noise[i] + sign * bias * (double)map->bias[i];
+            out[i] = (float)(scale > 0 ? fabs(error) / scale : 0);
+        }
 }
 
 /* The relative error of the picture's mean that 95 % of such pictures are within.  Where light
  * comes in rare bright samples most pixels have seen none, and seem to agree; the mean does not. */
-static double mean_error(const ErrorMap *map)
+static double mean_error(const ErrorMap *map, double mean)
 {
     size_t pixels = (size_t)map->width * (size_t)map->height;
-    double mean = error_map_mean(map), sum2 = 0;
+    double sum2 = 0;
     for (size_t i = 0; i < pixels; i++)
         sum2 += (double)map->noise[i] * (double)map->noise[i];
     return mean > 0 ? NORMAL_95 * sqrt(sum2) / (double)pixels / mean : 0;
@@ -308,14 +335,16 @@ static double mean_error(const ErrorMap *map)
 ErrorFigure error_figure(const ErrorMap *map)
 {
     size_t pixels = (size_t)map->width * (size_t)map->height;
+    double mean = error_map_mean(map), least = mean_error(map, mean);
     float *errors = map->scratch;
     ErrorFigure figure = {.is_known = true};
-    fill_errors(map, 1, 0, errors);
+    fill_errors(map, mean, 1, 0, errors);
     figure.noise = error_percentile(errors, pixels, ERROR_PERCENTILE);
-    fill_errors(map, 0, 1, errors);
-    figure.bias = error_percentile(errors, pixels, ERROR_PERCENTILE);
-    fill_errors(map, 1, 1, errors);
-    double least = mean_error(map);
+    if (!is_zero(map->bias, pixels)) {
+        fill_errors(map, mean, 0, 1, errors);
+        figure.bias = error_percentile(errors, pixels, ERROR_PERCENTILE);
+        fill_errors(map, mean, 1, 1, errors);
+    }
     figure.whole = fmax(least, error_percentile(errors, pixels, ERROR_PERCENTILE));
     figure.bound = BOUND_MARGIN * fmax(least, error_bound(errors, map->width, map->height));
     return figure;

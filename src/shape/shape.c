@@ -38,14 +38,12 @@ bool leaf_list(const Shape *shape, const Line *line, ShapeScratch *scratch)
     return hits.is_inside_before;
 }
 
-static bool hits_closest(const Shape *shape, const Ray *ray, Crossing *out)
+bool hits_closest(const Shape *leaf, const LeafHits *hits, const Ray *ray, Crossing *out)
 {
-    LeafHits hits;
-    leaf_hits(shape, ray, &hits);
-    for (int i = 0; i < hits.count; i++) {
-        const LeafHit *hit = &hits.at[i];
+    for (int i = 0; i < hits->count; i++) {
+        const LeafHit *hit = &hits->at[i];
         if (hit->t > ray->tmin && hit->t < ray->tmax && hit->is_visible) {
-            crossing_fill(shape, hit, out);
+            crossing_fill(leaf, hit, out);
             return true;
         }
     }
@@ -82,8 +80,14 @@ bool shape_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Cr
     const ShapeOps *ops = shape->kind < SHAPE_UNION ? shape_ops(shape) : NULL;
     if (!ops || shape->clip_count || !(ops->hits || ops->closest))
         return list_closest(shape, ray, scratch, out);
-    bool is_hit =
-        ops->closest ? ops->closest(shape, ray, scratch, out) : hits_closest(shape, ray, out);
+    bool is_hit;
+    if (ops->closest) {
+        is_hit = ops->closest(shape, ray, scratch, out);
+    } else {
+        LeafHits hits;
+        leaf_hits(shape, ray, &hits);
+        is_hit = hits_closest(shape, &hits, ray, out);
+    }
     if (is_hit && shape->is_inverted)
         crossing_invert(out);
     return is_hit;

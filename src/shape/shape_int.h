@@ -244,6 +244,9 @@ void crossings_sort(Crossing *items, int count);
 /* Find the crossings of a leaf that has few, before any inversion. */
 void leaf_hits(const Shape *shape, const Ray *ray, LeafHits *out);
 
+/* Take the first visible hit with tmin < t < tmax; false: there is none. */
+bool hits_closest(const Shape *leaf, const LeafHits *hits, const Ray *ray, Crossing *out);
+
 /* One end of the core: a hit of the child that lends it its look, and where the hits of all
  * children that end there may be. */
 typedef struct ConvexEnd {

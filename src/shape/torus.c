@@ -20,7 +20,8 @@ Shape *shape_torus(Arena *arena, double major, double minor)
 
 /* The line in units of length about its middle point f. */
 typedef struct TorusLine {
-    V3 f, e; /* e unit */
+    V3 f, e;            /* e unit */
+    double base, speed; /* of the ray: t is base + h / speed */
     double major, minor;
     double side; /* +1: the outer surface, -1: the inner one (the ring's far side) */
 } TorusLine;
@@ -68,45 +69,56 @@ static double torus_root(const TorusLine *l, double lo, double hi, double g_lo, 
     return x;
 }
 
-/* List the points that separate the roots along [lo, hi], ends included; returns how many. */
-static int separators(const TorusLine *l, double lo, double hi, double out[5])
+/* Points along the line, ascending: the first and the last are outside, and between two there is
+ * one root at most. */
+typedef struct Separators {
+    int count;
+    double h[5];
+} Separators;
+
+static void separate(const TorusLine *l, double lo, double hi, Separators *out)
 {
     double k = v3_dot(l->f, l->e), m = v3_len2(l->f), ring = l->major * l->major;
     double rest = m + (l->major - l->minor) * (l->major + l->minor);
     double flat = l->e.x * l->e.x + l->e.z * l->e.z, along = l->f.x * l->e.x + l->f.z * l->e.z;
     const double c[4] = {k * rest - 2 * ring * along, 2 * k * k + rest - 2 * ring * flat, 3 * k, 1};
     double turns[3];
-    int turn_count = roots_cubic_rough(c, turns), count = 0;
-    out[count++] = lo;
+    int turn_count = roots_cubic_rough(c, turns);
+    out->count = 0;
+    out->h[out->count++] = lo;
     for (int i = 0; i < turn_count; i++)
-        if (turns[i] > out[count - 1] && turns[i] < hi)
-            out[count++] = turns[i];
-    out[count++] = hi;
-    return count;
+        if (turns[i] > out->h[out->count - 1] && turns[i] < hi)
+            out->h[out->count++] = turns[i];
+    out->h[out->count++] = hi;
 }
 
-/* Add the crossings of one of the surfaces. */
-static void add_roots(const TorusLine *l, const double *at, int count, const LocalRay *ray,
-                      double base, double speed, LeafHits *out)
+/* Add the crossings of one of the surfaces, up to the first behind tmin if that is all that is
+ * wanted. */
+static void add_roots(const TorusLine *l, const Separators *at, const LocalRay *ray, double wanted,
+                      LeafHits *out)
 {
     double size = l->major + l->minor, outside = l->minor * l->minor * 0x1p-40;
     /* Both ends are outside, whatever rounding makes of them. */
-    double last = num_max(torus_at(l, at[0]).g, outside);
-    for (int i = 1; i < count; i++) {
-        double g = torus_at(l, at[i]).g, before = last;
-        if (i == count - 1)
+    double last = num_max(torus_at(l, at->h[0]).g, outside);
+    for (int i = 1; i < at->count; i++) {
+        double g = torus_at(l, at->h[i]).g, before = last;
+        if (i == at->count - 1)
             g = num_max(g, outside);
         last = g;
         bool next = g > 0;
         if (next == (before > 0) || out->count == LEAF_HITS_MAX)
             continue;
-        double h = torus_root(l, at[i - 1], at[i], before, g), t = base + h / speed;
+        if (l->base + at->h[i] / l->speed < wanted)
+            continue;
+        double h = torus_root(l, at->h[i - 1], at->h[i], before, g), t = l->base + h / l->speed;
         /* g moves by 2 r times what the point is off; twice that covers its bend. */
         double off = v3_sum_abs(local_error(ray, t)) + 2 * PLACE_EPS * size;
         double own = 4 * l->minor * (off + 4 * EPS_DOUBLE * l->minor) / fabs(torus_at(l, h).slope);
-        double error = own / speed + 4 * EPS_DOUBLE * (fabs(base) + fabs(t));
+        double error = own / l->speed + 4 * EPS_DOUBLE * (fabs(l->base) + fabs(t));
         int8_t change = l->side < 0 ? 0 : next ? -1 : 1;
         out->at[out->count++] = (LeafHit){t, error, l->side < 0, change, true};
+        if (t > wanted && wanted > -INFINITY)
+            return;
     }
 }
 
@@ -121,15 +133,17 @@ static void sort_hits(LeafHits *hits)
     }
 }
 
-static void torus_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
+/* List all crossings, or, if `wanted` is not -INFINITY, at least the first with a larger t. */
+static void find_hits(const Shape *shape, const LocalRay *ray, double wanted, LeafHits *out)
 {
     TorusLine l = {.major = shape->u.torus.major, .minor = shape->u.torus.minor, .side = 1};
     out->count = 0;
     out->is_inside_before = false;
     double size = l.major + l.minor, inverse = 1 / v3_len2(ray->d);
-    double base = -v3_dot(ray->o, ray->d) * inverse, speed = v3_len(ray->d);
-    l.f = v3_mad(ray->o, base, ray->d);
-    l.e = v3_scale(ray->d, 1 / speed);
+    l.base = -v3_dot(ray->o, ray->d) * inverse;
+    l.speed = v3_len(ray->d);
+    l.f = v3_mad(ray->o, l.base, ray->d);
+    l.e = v3_scale(ray->d, 1 / l.speed);
     /* The piece within the sphere around the torus and between its lids. */
     double room = size * size * (1 + 0x1p-40) - v3_len2(l.f);
     if (!(room > 0) || !(l.minor > 0))
@@ -144,14 +158,30 @@ static void torus_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
     }
     if (!(lo < hi))
         return;
-    double at[5];
-    int count = separators(&l, lo, hi, at);
-    add_roots(&l, at, count, ray, base, speed, out);
-    if (l.major > 0 && l.major < l.minor) {
+    Separators at;
+    separate(&l, lo, hi, &at);
+    bool has_inner = l.major > 0 && l.major < l.minor;
+    add_roots(&l, &at, ray, has_inner ? -INFINITY : wanted, out);
+    if (has_inner) {
         l.side = -1;
-        add_roots(&l, at, count, ray, base, speed, out);
+        add_roots(&l, &at, ray, -INFINITY, out);
         sort_hits(out);
     }
+}
+
+static void torus_hits(const Shape *shape, const LocalRay *ray, LeafHits *out)
+{
+    find_hits(shape, ray, -INFINITY, out);
+}
+
+static bool torus_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Crossing *out)
+{
+    (void)scratch;
+    LocalRay local;
+    LeafHits hits;
+    local_ray(shape, ray, &local);
+    find_hits(shape, &local, ray->tmin, &hits);
+    return hits_closest(shape, &hits, ray, out);
 }
 
 static void torus_point(const Shape *shape, const Crossing *crossing, V3 p, LocalPoint *out)
@@ -200,6 +230,7 @@ static V3 torus_farthest(const Shape *shape, V3 n)
 }
 
 const ShapeOps torus_ops = {.hits = torus_hits,
+                            .closest = torus_closest,
                             .point = torus_point,
                             .uv = torus_uv,
                             .is_inside = torus_is_inside,
