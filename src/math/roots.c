@@ -237,12 +237,28 @@ static double largest_of_three(double k)
     return u;
 }
 
+/* The cube root of x > 0 to about 1e-10, by Halley's steps from a straight line.  cbrt will not do:
+ * with it, a problem scaled by a power of two might have other digits. */
+static double cube_root(double x)
+{
+    int exponent;
+    double m = frexp(x, &exponent);
+    int third = (exponent - (exponent < 0 ? 2 : 0)) / 3;
+    m = ldexp(m, exponent - 3 * third); /* 0.5 to 4 */
+    double y = 0.75 + 0.23 * m;
+    for (int i = 0; i < 2; i++) {
+        double cube = y * y * y;
+        y *= (cube + 2 * m) / (2 * cube + m);
+    }
+    return ldexp(y, third);
+}
+
 /* The roots of y^3 + p y + q. */
 static int solve_depressed(double p, double q, double out[3])
 {
     double third = p / 3, half = 0.5 * fabs(q), disc = half * half + third * third * third;
     if (!(disc < 0)) { /* Cardano's formula, without its difference */
-        double a = cbrt(half + sqrt(disc)), b = third / a;
+        double cube = half + sqrt(disc), a = cube > 0 ? cube_root(cube) : 0, b = third / a;
         out[0] = a > 0 ? -q / (a * a + third + b * b) : 0;
         return 1;
     }
