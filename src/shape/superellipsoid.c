@@ -10,10 +10,13 @@
 /* Bound on the relative rounding of N, for exponents of 1; small p and q raise it. */
 #define NORM_EPS (64 * EPS_DOUBLE)
 
-/* The box that is searched reaches as much beyond the surface, so that its sides are outside. */
+/* What is searched reaches as much beyond the surface, so that its ends are outside. */
 #define BOX_SLACK 0x1p-40
 
 enum { DEPTH_MAX = 44 };
+
+/* Powers up to this do not vanish for any coordinate that rounding can leave. */
+#define POWER_MAX 4
 
 Shape *shape_superellipsoid(Arena *arena, double e, double n)
 {
@@ -106,20 +109,36 @@ typedef struct SuperLine {
     bool is_convex;
 } SuperLine;
 
-/* Clip to the box; false when it is missed. */
-static bool cut_to_box(SuperLine *l)
+/* Cut a line to where n . p is between -1 and 1. */
+static void cut_to_slab(SuperLine *l, V3 n)
 {
-    const double o[3] = {l->o.x, l->o.y, l->o.z}, d[3] = {l->d.x, l->d.y, l->d.z};
-    double side = 1 + BOX_SLACK;
-    for (int i = 0; i < 3; i++) {
-        if (d[i] == 0) {
-            if (fabs(o[i]) > side)
-                return false;
-            continue;
+    double o = v3_dot(n, l->o), d = v3_dot(n, l->d), side = 1 + BOX_SLACK;
+    if (d == 0) {
+        l->hi = fabs(o) > side ? -INFINITY : l->hi;
+        return;
+    }
+    double a = (-side - o) / d, b = (side - o) / d;
+    l->lo = num_max(l->lo, num_min(a, b));
+    l->hi = num_min(l->hi, num_max(a, b));
+}
+
+/* Cut to what is known to hold the surface; false when that is missed.  N grows as p and q fall: it
+ * is no less than with 1 for those that are not above 1, and with infinity for the others. */
+static bool cut_to_hull(SuperLine *l)
+{
+    bool is_sum_xy = l->s->p <= 1, is_sum_z = l->s->q <= 1;
+    for (int i = 0; i < 3; i++)
+        cut_to_slab(l, v3(i == 0, i == 1, i == 2));
+    for (int side = -1; side <= 1; side += 2) {
+        if (is_sum_xy && is_sum_z) {
+            cut_to_slab(l, v3(1, side, 1));
+            cut_to_slab(l, v3(1, side, -1));
+        } else if (is_sum_xy) {
+            cut_to_slab(l, v3(1, side, 0));
+        } else if (is_sum_z) {
+            cut_to_slab(l, v3(1, 0, side));
+            cut_to_slab(l, v3(0, 1, side));
         }
-        double a = (-side - o[i]) / d[i], b = (side - o[i]) / d[i];
-        l->lo = num_max(l->lo, num_min(a, b));
-        l->hi = num_min(l->hi, num_max(a, b));
     }
     return l->lo < l->hi;
 }
@@ -136,7 +155,7 @@ static bool line_init(SuperLine *l, const Shape *shape, const Ray *ray, double n
     l->error = local_error(&local, l->base);
     l->lo = near - l->base;
     l->hi = far - l->base;
-    return cut_to_box(l);
+    return cut_to_hull(l);
 }
 
 static V3 line_at(const SuperLine *l, double t)
@@ -298,6 +317,136 @@ static void add_crossing(const SuperLine *l, double t, int change, HitList *out)
     out->at[out->count++] = make_hit(l, t, gradient, change);
 }
 
+/* --- by powers: where these cannot vanish -------------------------------------------------- */
+
+/* A place on the line within an octant: the magnitudes of x, y and z, their powers p, p and q, and
+ * what these add up to: 1 on the surface, as N^q. */
+typedef struct SuperPlace {
+    double t, sum;
+    double at[3], power[3];
+} SuperPlace;
+
+static bool has_powers(const SuperParams *s)
+{
+    return s->p <= POWER_MAX && s->q <= POWER_MAX;
+}
+
+static double sum_of(const SuperParams *s, const double power[3])
+{
+    double flat = power[0] + power[1];
+    return (s->p == s->q ? flat : pow(flat, s->q / s->p)) + power[2];
+}
+
+static SuperPlace place_at(const SuperLine *l, double t)
+{
+    V3 p = v3_abs(line_at(l, t));
+    SuperPlace place = {.t = t, .at = {p.x, p.y, p.z}};
+    for (int i = 0; i < 3; i++)
+        place.power[i] = pow(place.at[i], i < 2 ? l->s->p : l->s->q);
+    place.sum = sum_of(l->s, place.power);
+    return place;
+}
+
+/* Is the sum above 1 (or below it) all the way between two places, for sure? */
+static bool is_one_sided(const SuperParams *s, const SuperPlace *a, const SuperPlace *b)
+{
+    double least[3], most[3], doubt = s->q * norm_error(s);
+    for (int i = 0; i < 3; i++) {
+        least[i] = num_min(a->power[i], b->power[i]);
+        most[i] = num_max(a->power[i], b->power[i]);
+    }
+    return sum_of(s, least) > 1 + doubt || sum_of(s, most) < 1 - doubt;
+}
+
+/* x^(p - 1) of a coordinate. */
+static double power_per(const SuperParams *s, const SuperPlace *place, int i)
+{
+    double p = i < 2 ? s->p : s->q;
+    if (place->at[i] == 0)
+        return p < 1 ? INFINITY : p == 1 ? 1 : 0;
+    return place->power[i] / place->at[i];
+}
+
+/* Return how the sum's slope is bounded between two places: 1 or -1: it has this sign, 0: unknown.
+ * x^(p - 1) is monotone. */
+static int slope_sign(const SuperLine *l, const SuperPlace *a, const SuperPlace *b)
+{
+    const SuperParams *s = l->s;
+    const double d[3] = {l->d.x, l->d.y, l->d.z};
+    double flat_a = 1, flat_b = 1, least = 0, most = 0;
+    if (s->p != s->q) {
+        /* (x^p + y^p)^(q/p - 1): the sum is between those of the least and of the largest powers.
+         */
+        double lo = num_min(a->power[0], b->power[0]) + num_min(a->power[1], b->power[1]);
+        double hi = num_max(a->power[0], b->power[0]) + num_max(a->power[1], b->power[1]);
+        flat_a = pow(lo, s->q / s->p - 1);
+        flat_b = pow(hi, s->q / s->p - 1);
+    }
+    for (int i = 0; i < 3; i++) {
+        if (d[i] == 0)
+            continue;
+        double one = power_per(l->s, a, i), other = power_per(l->s, b, i);
+        double speed = fabs(d[i]) * (b->at[i] > a->at[i] ? 1 : -1);
+        double range[2] = {num_min(one, other), num_max(one, other)};
+        if (i < 2) {
+            range[0] *= num_min(flat_a, flat_b);
+            range[1] *= num_max(flat_a, flat_b);
+        }
+        add_slope(range, speed, &least, &most);
+    }
+    return least > 0 ? 1 : most < 0 ? -1 : 0;
+}
+
+/* Find the change of sign between two places: by secants, each of which halves what the end that
+ * stays counts for (the Illinois method). */
+static double root_between(const SuperLine *l, const SuperPlace *from, const SuperPlace *to)
+{
+    double a = from->t, b = to->t, fa = from->sum - 1, fb = to->sum - 1;
+    double certain = 0.25 * l->s->q * norm_error(l->s);
+    int kept = 0;
+    for (int i = 0; i < 200; i++) {
+        double t = (i & 15) == 15 ? 0.5 * (a + b) : (a * fb - b * fa) / (fb - fa);
+        if (!(t > a && t < b))
+            t = 0.5 * (a + b);
+        if (!(t > a && t < b))
+            break;
+        double f = place_at(l, t).sum - 1;
+        if (fabs(f) <= certain)
+            return t;
+        if ((f > 0) == (fa > 0)) {
+            a = t;
+            fa = f;
+            fb *= kept > 0 ? 0.5 : 1;
+            kept = 1;
+        } else {
+            b = t;
+            fb = f;
+            fa *= kept < 0 ? 0.5 : 1;
+            kept = -1;
+        }
+    }
+    return 0.5 * (a + b);
+}
+
+static void search_powers(const SuperLine *l, const SuperPlace *a, const SuperPlace *b, int depth,
+                          HitList *out)
+{
+    bool is_crossed = (a->sum > 1) != (b->sum > 1);
+    if (out->count >= out->most || (!is_crossed && is_one_sided(l->s, a, b)))
+        return;
+    double middle = 0.5 * (a->t + b->t);
+    if (depth >= DEPTH_MAX || !(middle > a->t && middle < b->t) || slope_sign(l, a, b) != 0) {
+        if (is_crossed)
+            add_crossing(l, root_between(l, a, b), a->sum > 1 ? 1 : -1, out);
+        return;
+    }
+    SuperPlace m = place_at(l, middle);
+    search_powers(l, a, &m, depth + 1, out);
+    search_powers(l, &m, b, depth + 1, out);
+}
+
+/* --- octant by octant ---------------------------------------------------------------------- */
+
 static void search(const SuperLine *l, double a, double b, double fa, double fb, int depth,
                    HitList *out)
 {
@@ -320,6 +469,32 @@ static void search(const SuperLine *l, double a, double b, double fa, double fb,
     search(l, middle, b, f, fb, depth + 1, out);
 }
 
+/* Search between `count` cuts and the end behind them; returns whether it starts inside. */
+static bool search_norm(const SuperLine *l, const double *cut, int count, HitList *out)
+{
+    double first = height_at(l, cut[0]), f = first;
+    for (int i = 0; i < count; i++) {
+        double next = height_at(l, cut[i + 1]);
+        if (cut[i + 1] > cut[i])
+            search(l, cut[i], cut[i + 1], f, next, 0, out);
+        f = next;
+    }
+    return first <= 0;
+}
+
+static bool search_places(const SuperLine *l, const double *cut, int count, HitList *out)
+{
+    SuperPlace place = place_at(l, cut[0]);
+    bool is_inside = place.sum <= 1;
+    for (int i = 0; i < count && out->count < out->most; i++) {
+        SuperPlace next = place_at(l, cut[i + 1]);
+        if (next.t > place.t)
+            search_powers(l, &place, &next, 0, out);
+        place = next;
+    }
+    return is_inside;
+}
+
 /* Search octant by octant. */
 static int general_hits(const SuperLine *l, bool *is_inside_before, LeafHit *at, int most)
 {
@@ -337,14 +512,8 @@ static int general_hits(const SuperLine *l, bool *is_inside_before, LeafHit *at,
     }
     cut[count] = l->hi;
     HitList list = {at, 0, most};
-    double f = height_at(l, cut[0]);
-    *is_inside_before = f <= 0;
-    for (int i = 0; i < count; i++) {
-        double next = height_at(l, cut[i + 1]);
-        if (cut[i + 1] > cut[i])
-            search(l, cut[i], cut[i + 1], f, next, 0, &list);
-        f = next;
-    }
+    *is_inside_before =
+        has_powers(l->s) ? search_places(l, cut, count, &list) : search_norm(l, cut, count, &list);
     return list.count;
 }
 
