@@ -50,21 +50,18 @@ bool hits_closest(const Shape *leaf, const LeafHits *hits, const Ray *ray, Cross
     return false;
 }
 
-/* Start the scratch afresh and list what crosses a part of the line. */
-static bool list_part(const Shape *shape, const Ray *ray, double near, double far,
-                      bool is_first_only, ShapeScratch *scratch)
+/* Start the scratch afresh for a part of a line. */
+static Line begin_line(const Ray *ray, double near, double far, ShapeScratch *scratch)
 {
-    Line line = {ray, v3(1 / ray->d.x, 1 / ray->d.y, 1 / ray->d.z), near, far, is_first_only};
     scratch->count = 0;
     scratch->state_count = 0;
     scratch->is_overflown = false;
-    return csg_list(shape, &line, scratch);
+    return (Line){ray, v3(1 / ray->d.x, 1 / ray->d.y, 1 / ray->d.z), near, far, false};
 }
 
-static bool list_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Crossing *out)
+/* Take the first visible crossing of the list with tmin < t < tmax. */
+static bool first_of_list(const ShapeScratch *scratch, const Ray *ray, Crossing *out)
 {
-    bool is_leaf = shape->kind < SHAPE_UNION && shape->clip_count == 0;
-    list_part(shape, ray, ray->tmin, ray->tmax, is_leaf, scratch);
     for (int i = 0; i < scratch->count; i++) {
         const Crossing *c = &scratch->items[i];
         if (c->is_visible && c->t > ray->tmin && c->t < ray->tmax) {
@@ -75,22 +72,97 @@ static bool list_closest(const Shape *shape, const Ray *ray, ShapeScratch *scrat
     return false;
 }
 
-bool shape_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Crossing *out)
+static bool list_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Crossing *out)
 {
-    const ShapeOps *ops = shape->kind < SHAPE_UNION ? shape_ops(shape) : NULL;
-    if (!ops || shape->clip_count || !(ops->hits || ops->closest))
-        return list_closest(shape, ray, scratch, out);
+    Line line = begin_line(ray, ray->tmin, ray->tmax, scratch);
+    csg_list(shape, &line, scratch);
+    return first_of_list(scratch, ray, out);
+}
+
+/* The first crossing of a leaf without its clips. */
+static bool leaf_closest(const Shape *leaf, const Ray *ray, ShapeScratch *scratch, Crossing *out)
+{
+    const ShapeOps *ops = shape_ops(leaf);
+    LeafHits hits;
     bool is_hit;
     if (ops->closest) {
-        is_hit = ops->closest(shape, ray, scratch, out);
+        is_hit = ops->closest(leaf, ray, scratch, out);
+    } else if (ops->hits) {
+        leaf_hits(leaf, ray, &hits);
+        is_hit = hits_closest(leaf, &hits, ray, out);
     } else {
-        LeafHits hits;
-        leaf_hits(shape, ray, &hits);
-        is_hit = hits_closest(shape, &hits, ray, out);
+        Line line = begin_line(ray, ray->tmin, ray->tmax, scratch);
+        line.is_first_only = true;
+        if (leaf->is_finished && !line_cut(&line, &leaf->reach))
+            return false;
+        leaf_list(leaf, &line, scratch);
+        is_hit = first_of_list(scratch, ray, out);
     }
-    if (is_hit && shape->is_inverted)
+    if (is_hit && leaf->is_inverted)
         crossing_invert(out);
     return is_hit;
+}
+
+/* The stretch of a line that all clips leave, with room for the errors of its ends, and the part of
+ * it that is left for sure. */
+typedef struct Clipped {
+    double near, far, sure_near, sure_far;
+} Clipped;
+
+static void clip_from(Clipped *c, const LeafHit *hit)
+{
+    c->near = num_max(c->near, hit->t - 2 * hit->t_error);
+    c->sure_near = num_max(c->sure_near, hit->t + hit->t_error);
+}
+
+static void clip_to(Clipped *c, const LeafHit *hit)
+{
+    c->far = num_min(c->far, hit->t + 2 * hit->t_error);
+    c->sure_far = num_min(c->sure_far, hit->t - hit->t_error);
+}
+
+/* Clip by what is convex; false when nothing is left. */
+static bool clip_convex(const Shape *clip, const Ray *ray, Clipped *c)
+{
+    LeafHits hits;
+    leaf_hits(clip, ray, &hits);
+    for (int i = 0; i < hits.count; i++) {
+        bool is_entry = (hits.at[i].change > 0) != clip->is_inverted;
+        (is_entry ? clip_from : clip_to)(c, &hits.at[i]);
+    }
+    return hits.count > 0 || hits.is_inside_before != clip->is_inverted;
+}
+
+/* What became of a question that was asked the short way. */
+typedef enum Answer { ANSWER_NO, ANSWER_YES, ANSWER_UNSURE } Answer;
+
+/* Find the first crossing of a leaf whose clips are convex: within the stretch they leave.  Next to
+ * its ends it takes lists to tell. */
+static Answer clipped_closest(const Shape *leaf, const Ray *ray, ShapeScratch *scratch,
+                              Crossing *out)
+{
+    Clipped c = {ray->tmin, ray->tmax, -INFINITY, INFINITY};
+    for (int i = 0; i < leaf->clip_count; i++) {
+        if (!leaf->clips[i]->is_convex_leaf)
+            return ANSWER_UNSURE;
+        if (!clip_convex(leaf->clips[i], ray, &c))
+            return ANSWER_NO;
+    }
+    Ray part = {ray->o, ray->d, c.near, c.far};
+    if (!(part.tmin < part.tmax) || !leaf_closest(leaf, &part, scratch, out))
+        return ANSWER_NO;
+    bool is_sure = out->t - out->t_error > c.sure_near && out->t + out->t_error < c.sure_far;
+    return is_sure ? ANSWER_YES : ANSWER_UNSURE;
+}
+
+bool shape_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Crossing *out)
+{
+    if (shape->kind >= SHAPE_UNION)
+        return list_closest(shape, ray, scratch, out);
+    if (shape->clip_count == 0)
+        return leaf_closest(shape, ray, scratch, out);
+    Answer answer = clipped_closest(shape, ray, scratch, out);
+    return answer == ANSWER_UNSURE ? list_closest(shape, ray, scratch, out) : answer == ANSWER_YES;
 }
 
 bool shape_is_met(const Shape *shape, const Ray *ray, ShapeScratch *scratch)
@@ -105,7 +177,8 @@ bool shape_is_met(const Shape *shape, const Ray *ray, ShapeScratch *scratch)
 
 void shape_crossings(const Shape *shape, const Ray *ray, ShapeScratch *scratch, CrossList *out)
 {
-    out->is_inside_before = list_part(shape, ray, -INFINITY, INFINITY, false, scratch);
+    Line line = begin_line(ray, -INFINITY, INFINITY, scratch);
+    out->is_inside_before = csg_list(shape, &line, scratch);
     out->items = scratch->items;
     out->count = scratch->count;
     out->is_overflown = scratch->is_overflown;
