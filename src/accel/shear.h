@@ -89,10 +89,9 @@ static inline void shear_bound_error(const Shear *s, const Sheared p[3], double 
 }
 
 /* Find where the line meets a triangle; false when it does not or t is not in (tmin, tmax). */
-static inline bool sheared_test(const Shear *s, const V3 *a, const V3 *b, const V3 *c, double tmin,
-                                double tmax, TriHit *out)
+static inline bool sheared_meets(const Shear *s, const Sheared p[3], double tmin, double tmax,
+                                 TriHit *out)
 {
-    Sheared p[3] = {shear_point(s, *a), shear_point(s, *b), shear_point(s, *c)};
     double e0 = shear_edge(p[1], p[2]), e1 = shear_edge(p[2], p[0]), e2 = shear_edge(p[0], p[1]);
     bool left = shear_is_left(e0, p[1], p[2]);
     if (left != shear_is_left(e1, p[2], p[0]) || left != shear_is_left(e2, p[0], p[1]))
@@ -107,6 +106,14 @@ static inline bool sheared_test(const Shear *s, const V3 *a, const V3 *b, const 
         return false;
     shear_bound_error(s, p, det, out);
     return true;
+}
+
+/* The same for corners that are not yet sheared. */
+static inline bool sheared_test(const Shear *s, const V3 *a, const V3 *b, const V3 *c, double tmin,
+                                double tmax, TriHit *out)
+{
+    const Sheared p[3] = {shear_point(s, *a), shear_point(s, *b), shear_point(s, *c)};
+    return sheared_meets(s, p, tmin, tmax, out);
 }
 
 #endif

@@ -181,15 +181,22 @@ static void keep(HeightWalk *w, const TriHit *hit, const V3 corner[3])
 
 static void test_cell(HeightWalk *w, int x, int z)
 {
-    uint32_t part = 2 * ((uint32_t)z * (uint32_t)(w->data->columns - 1) + (uint32_t)x);
-    for (uint32_t i = 0; i < 2; i++) {
-        V3 corner[3];
+    const HeightData *d = w->data;
+    uint32_t part = 2 * ((uint32_t)z * (uint32_t)(d->columns - 1) + (uint32_t)x);
+    /* The corners of both triangles: see corners_of. */
+    const V3 corner[4] = {v3(x, height_at(d, x, z), z), v3(x + 1, height_at(d, x + 1, z), z),
+                          v3(x, height_at(d, x, z + 1), z + 1),
+                          v3(x + 1, height_at(d, x + 1, z + 1), z + 1)};
+    Sheared at[4];
+    for (int i = 0; i < 4; i++)
+        at[i] = shear_point(&w->shear, corner[i]);
+    for (int i = 0; i < 2; i++) {
+        const Sheared side[3] = {at[3 * i], at[1], at[2]};
         TriHit hit;
-        corners_of(w->data, part + i, corner);
-        if (!sheared_test(&w->shear, &corner[0], &corner[1], &corner[2], w->tmin, w->tmax, &hit))
+        if (!sheared_meets(&w->shear, side, w->tmin, w->tmax, &hit))
             continue;
-        hit.triangle = part + i;
-        keep(w, &hit, corner);
+        hit.triangle = part + (uint32_t)i;
+        keep(w, &hit, (const V3[3]){corner[3 * i], corner[1], corner[2]});
     }
 }
 
