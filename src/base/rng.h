@@ -23,13 +23,23 @@ static inline uint64_t rng_mix(uint64_t x)
     return x ^ (x >> 31);
 }
 
+/* Return what names the generators of a pass under `seed`. */
+static inline uint64_t rng_pass(uint64_t seed, uint32_t pass)
+{
+    uint64_t key = rng_mix(seed + 0x9e3779b97f4a7c15u);
+    return rng_mix(key ^ (uint64_t)pass * 0xd1342543de82ef95u);
+}
+
+/* Return the generator of item `index` of what rng_pass named. */
+static inline Rng rng_of(uint64_t pass, uint64_t index)
+{
+    return (Rng){rng_mix(pass ^ index * 0x9e3779b97f4a7c15u), 0};
+}
+
 /* Return the generator of item `index` of `pass` under `seed`. */
 static inline Rng rng_at(uint64_t seed, uint32_t pass, uint64_t index)
 {
-    uint64_t key = rng_mix(seed + 0x9e3779b97f4a7c15u);
-    key = rng_mix(key ^ (uint64_t)pass * 0xd1342543de82ef95u);
-    key = rng_mix(key ^ index * 0x9e3779b97f4a7c15u);
-    return (Rng){key, 0};
+    return rng_of(rng_pass(seed, pass), index);
 }
 
 static inline uint64_t rng_u64(Rng *rng)

@@ -54,6 +54,7 @@ struct EyeThread {
     Interiors camera_interiors; /* around that point */
     double *blur_limits;        /* variance of the mean below which n rays are enough */
     Rng rng;                    /* of the sample being traced */
+    uint64_t eye_pass, path_pass, media_pass; /* what the random numbers of samples are of */
     FreshRecords *fresh;        /* not NULL: the cache is being filled, no picture made */
     PathKeys path;
     /* Shadow samples of the area light at hand, valid where the mark is the current one. */

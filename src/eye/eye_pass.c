@@ -93,6 +93,9 @@ Status eye_thread_new(const Tracer *tracer, const EyeOptions *options, Diag *dia
     eye->plan = tracer_plan(tracer);
     eye->has_air = plan_has_air(eye->plan);
     eye->options = *options;
+    eye->eye_pass = rng_pass(options->seed, EYE_RNG);
+    eye->path_pass = rng_pass(options->seed, PATH_RNG);
+    eye->media_pass = rng_pass(options->seed, MEDIA_RNG);
     eye->gather = gather_scratch_new();
     if (!eye->gather)
         status = diag_no_memory(diag, "gathering photons");
@@ -262,14 +265,14 @@ static bool sample_is_finite(const EyeSample *s)
 
 bool eye_sample(EyeThread *eye, double x, double y, uint32_t pixel, uint32_t index, EyeSample *out)
 {
-    eye->rng = rng_at(eye->options.seed, EYE_RNG, (uint64_t)pixel << 32 | index);
-    Rng of_pixel = rng_at(eye->options.seed, PATH_RNG, pixel);
+    eye->rng = rng_of(eye->eye_pass, (uint64_t)pixel << 32 | index);
+    Rng of_pixel = rng_of(eye->path_pass, pixel);
     eye->path.choice = rng_u64(&of_pixel);
     eye->path.bounce = rng_u64(&of_pixel);
     eye->path.wave = rng_u64(&of_pixel);
     eye->path.gather = rng_u64(&of_pixel);
     eye->path.index = index;
-    eye->trace.media_rng = rng_at(eye->options.seed, MEDIA_RNG, (uint64_t)pixel << 32 | index);
+    eye->trace.media_rng = rng_of(eye->media_pass, (uint64_t)pixel << 32 | index);
     arena_reset(eye->trace.scratch);
     eye->trace.stats.count[STAT_SAMPLES]++;
     if (eye->blur_limits && eye->options.is_progressive) {
