@@ -240,11 +240,12 @@ static V3 step_gradient(FuncOp op, const double x[FUNC_FROM_MAX], double value,
     }
 }
 
-double func_gradient(const Func *func, const double *arguments, V3 *gradient)
+/* Compute all slots, and their derivatives by the first three parameters. */
+static void differentiate(const Func *func, const double *arguments, double *slots, V3 *slopes)
 {
     static const V3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    double slots[FUNC_SLOTS_MAX], x[FUNC_FROM_MAX];
-    V3 slopes[FUNC_SLOTS_MAX], g[FUNC_FROM_MAX];
+    double x[FUNC_FROM_MAX];
+    V3 g[FUNC_FROM_MAX];
     load(func, arguments, slots);
     int first = func->param_count + func->const_count;
     for (int i = 0; i < first; i++)
@@ -257,8 +258,27 @@ double func_gradient(const Func *func, const double *arguments, V3 *gradient)
         double value = slots[first + i] = compute((FuncOp)step->op, x);
         slopes[first + i] = step_gradient((FuncOp)step->op, x, value, g);
     }
+}
+
+double func_gradient(const Func *func, const double *arguments, V3 *gradient)
+{
+    double slots[FUNC_SLOTS_MAX];
+    V3 slopes[FUNC_SLOTS_MAX];
+    differentiate(func, arguments, slots, slopes);
     *gradient = slopes[func->result];
     return slots[func->result];
+}
+
+V3 func_triple(const FuncTriple *triple, const double *arguments, V3 *by_first, V3 *by_second)
+{
+    double slots[FUNC_SLOTS_MAX];
+    V3 slopes[FUNC_SLOTS_MAX];
+    differentiate(triple->func, arguments, slots, slopes);
+    V3 x = slopes[triple->results[0]], y = slopes[triple->results[1]],
+       z = slopes[triple->results[2]];
+    *by_first = v3(x.x, y.x, z.x);
+    *by_second = v3(x.y, y.y, z.y);
+    return v3(slots[triple->results[0]], slots[triple->results[1]], slots[triple->results[2]]);
 }
 
 /* --- making --------------------------------------------------------------------------------- */
@@ -381,4 +401,21 @@ const Func *func_end(Arena *arena, const FuncBuilder *b, int result)
     *func =
         (Func){b->param_count, b->const_count, b->step_count, consts, steps, slot_of(b, result)};
     return func;
+}
+
+bool func_join(Arena *arena, const Func *const parts[3], FuncTriple *out)
+{
+    FuncBuilder code;
+    func_begin(&code, 2);
+    int results[3];
+    const int arguments[3] = {func_param(&code, 0), func_param(&code, 1), func_const(&code, 0)};
+    for (int i = 0; i < 3; i++) {
+        results[i] = func_call(&code, parts[i], arguments);
+        if (results[i] == NO_SLOT)
+            return false;
+    }
+    out->func = func_end(arena, &code, results[0]);
+    for (int i = 0; i < 3; i++)
+        out->results[i] = slot_of(&code, results[i]);
+    return true;
 }

@@ -78,6 +78,17 @@ int func_call(FuncBuilder *builder, const Func *callee, const int *arguments);
 /* Return the function whose value is in a slot, in `arena`; NULL when memory is out. */
 const Func *func_end(Arena *arena, const FuncBuilder *builder, int result);
 
+/* Three functions of the same parameters as one, so that what they share is computed once.
+ * func.result is the first of the results. */
+typedef struct FuncTriple {
+    const Func *func;
+    int results[3]; /* slots: of FuncRanges, too */
+} FuncTriple;
+
+/* Join three functions of up to three parameters: of the first two, the third being 0.  Returns
+ * false when they are too long together; out->func is NULL when memory is out. */
+bool func_join(Arena *arena, const Func *const parts[3], FuncTriple *out);
+
 /* --- asking (any thread) -------------------------------------------------------------------- */
 
 /* Return the value for param_count arguments. */
@@ -87,13 +98,16 @@ double func_value(const Func *func, const double *arguments);
  * or bends, those of one side. */
 double func_gradient(const Func *func, const double *arguments, V3 *gradient);
 
+/* Return the values as a vector, and its derivatives by the first two parameters. */
+V3 func_triple(const FuncTriple *triple, const double *arguments, V3 *by_first, V3 *by_second);
+
 /* Bound the value over ranges of the arguments.  With rounding, the bounds hold for func_value.
  *
  * work  for func_slope. */
 Range func_range(const Func *func, const Range *arguments, FuncRanges *work);
 
-/* Bound the derivative along a stretch of which func_range was asked just before; `slopes` are
- * those of the arguments along it.  It is RANGE_ALL where the value may jump. */
+/* Bound the derivative along a stretch, or in a box, of which func_range was asked just before;
+ * `slopes` are those of the arguments along it.  It is RANGE_ALL where the value may jump. */
 Range func_slope(const Func *func, const Range *slopes, FuncRanges *work);
 
 #endif

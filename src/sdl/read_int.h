@@ -87,11 +87,18 @@ Node *read_height_field(Parser *p);
 Node *read_mesh(Parser *p);
 Node *read_mesh2(Parser *p);
 Node *read_isosurface(Parser *p);
+Node *read_parametric(Parser *p);
 Node *read_julia_fractal(Parser *p);
 Node *read_union(Parser *p);
 Node *read_merge(Parser *p);
 Node *read_intersection(Parser *p);
 Node *read_difference(Parser *p);
+
+/* contained_by and its box or sphere. */
+const Shape *read_container(Parser *p);
+
+/* Read a number that must be above 0; others are warned of, as in POV-Ray, and not used: 0. */
+double read_positive(Parser *p, const char *what, Span *span);
 
 /* light_source, after its opening brace up to and including the closing one. */
 Node *read_light_source(Parser *p);

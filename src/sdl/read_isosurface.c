@@ -20,47 +20,6 @@ typedef struct IsosurfaceItems {
     bool is_open;
 } IsosurfaceItems;
 
-/* contained_by { box { ... } } or { sphere { ... } } */
-static const Shape *read_container(Parser *p)
-{
-    read_open(p);
-    Token word = *parse_peek(p);
-    bool is_sphere = word.kind == KW_SPHERE;
-    if (!is_sphere && word.kind != KW_BOX)
-        parse_fail(p, word.span, "contained_by wants box or sphere, found %s",
-                   token_kind_text(word.kind));
-    read_open(p);
-    V3 first = parse_v3(p);
-    parse_comma(p);
-    Shape *shape = NULL;
-    if (is_sphere) {
-        Span span;
-        double radius = read_finite(p, "the radius of the container", &span);
-        if (!(radius > 0))
-            parse_fail(p, span, "the radius of the container must be above 0, not %g", radius);
-        shape = parse_no_null(p, shape_sphere(parse_arena(p), first, radius));
-    } else {
-        V3 second = parse_v3(p);
-        V3 size = v3_sub(first, second);
-        if (size.x == 0 || size.y == 0 || size.z == 0)
-            parse_fail(p, parse_last_span(p), "the box of the container has no volume");
-        shape = parse_no_null(p, shape_box(parse_arena(p), first, second));
-    }
-    parse_expect(p, TOKEN_RBRACE, "the container");
-    parse_expect(p, TOKEN_RBRACE, "the container");
-    return shape;
-}
-
-/* Read a number that must be above 0; others are warned of, as in POV-Ray, and not used. */
-static double read_positive(Parser *p, const char *what, Span *span)
-{
-    double value = read_finite(p, what, span);
-    if (!(value > 0))
-        parse_warn(p, WARN_GEOMETRY, *span, "%s must be above 0, not %g: it is not used", what,
-                   value);
-    return value > 0 ? value : 0;
-}
-
 static const Func *read_surface_function(Parser *p)
 {
     Value value;

@@ -42,6 +42,7 @@ static const ObjectRule *object_rule(TokenKind word)
         {KW_MESH, read_mesh},
         {KW_MESH2, read_mesh2},
         {KW_ISOSURFACE, read_isosurface},
+        {KW_PARAMETRIC, read_parametric},
         {KW_JULIA_FRACTAL, read_julia_fractal},
         {KW_UNION, read_union},
         {KW_COMPOSITE, read_union},

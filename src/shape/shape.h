@@ -171,6 +171,8 @@ typedef struct ShapeRounding {
     bool is_exact; /* xform rounds nothing: it is none, or a scaling by a power of two */
 } ShapeRounding;
 
+typedef struct ParametricData ParametricData; /* shape/parametric_int.h */
+
 struct Shape {
     ShapeKind kind;
     bool is_inverted;
@@ -193,6 +195,7 @@ struct Shape {
         TriangleParams triangle;
         IsosurfaceParams iso;
         const JuliaForm *julia;
+        const ParametricData *parametric; /* shared by copies */
         const MeshData *mesh; /* shared between instances, like those below */
         const PolygonData *polygon;
         const PrismData *prism;
@@ -232,7 +235,7 @@ typedef struct Crossing {
     bool is_visible;    /* false: bounds the solid but shows no surface (clip, disc's plane) */
     bool
         is_flipped; /* an odd number of inversions, the leaf's own included: its normal points in */
-    double u, v;    /* of triangles: barycentrics; else unused */
+    double u, v;    /* of triangles: barycentrics; of parametrics: parameters; else unused */
 } Crossing;
 
 /* A list of crossings, ascending in t.  Its memory is the scratch's: it lives until the next
@@ -316,6 +319,10 @@ Shape *shape_sor(Arena *arena, const V2 *points, int count, bool is_open);
 Shape *shape_julia(Arena *arena, const JuliaForm *form); /* form is copied */
 Shape *shape_isosurface(Arena *arena, const Func *func, double threshold, const Shape *container,
                         bool is_open);
+
+/* The points that functions of u and v give for u from lo.u to hi.u, v from lo.v to hi.v, where
+ * they are within a box or a sphere: a sheet without an inside.  container: not transformed. */
+Shape *shape_parametric(Arena *arena, const FuncTriple *func, V2 lo, V2 hi, const Shape *container);
 Shape *shape_height_field(Arena *arena, const HeightData *data); /* after height_prepare */
 /* kind: SHAPE_UNION, SHAPE_MERGE or SHAPE_INTERSECTION; children are borrowed. */
 Shape *shape_csg(Arena *arena, ShapeKind kind, Shape **children, int child_count);
