@@ -1,9 +1,15 @@
 /* The one door to the heap.  SPDX-License-Identifier: Apache-2.0 */
+#define _DEFAULT_SOURCE /* madvise */
 #include "base/mem.h"
 
 #include <stdatomic.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <sys/mman.h>
+
+/* Blocks from twice this size on lie on large pages where the system has them: it hands these out
+ * faster, and finds what is on them sooner. */
+#define LARGE_PAGE_BYTES ((size_t)2 << 20)
 
 /* Allocations left before they start to fail; negative: they never do. */
 static atomic_long fail_countdown = -1;
@@ -23,9 +29,28 @@ static int must_fail(void)
     return left == 0;
 }
 
+/* Ask for large pages, all of which lie within the block.  It is only a wish. */
+static void wish_large(void *block, size_t size)
+{
+#ifdef MADV_HUGEPAGE
+    if (!block || size < 2 * LARGE_PAGE_BYTES)
+        return;
+    uintptr_t begin = (uintptr_t)block, end = begin + size;
+    begin = (begin + LARGE_PAGE_BYTES - 1) / LARGE_PAGE_BYTES * LARGE_PAGE_BYTES;
+    end = end / LARGE_PAGE_BYTES * LARGE_PAGE_BYTES;
+    (void)madvise((void *)begin, end - begin, MADV_HUGEPAGE);
+#else
+    (void)block, (void)size;
+#endif
+}
+
 void *mem_alloc(size_t size)
 {
-    return must_fail() ? NULL : calloc(1, size ? size : 1);
+    if (must_fail())
+        return NULL;
+    void *block = calloc(1, size ? size : 1);
+    wish_large(block, size);
+    return block;
 }
 
 void *mem_array(size_t count, size_t size)

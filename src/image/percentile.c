@@ -75,10 +75,10 @@ static double tile_variance(const float *errors, int width, int height, int x0, 
     return count > 0 ? PATCH * above * (1 - above / count) : 0;
 }
 
-double error_bound(const float *errors, int width, int height)
+double error_bound(const float *errors, int width, int height, double figure)
 {
     size_t pixels = (size_t)width * (size_t)height;
-    double figure = error_percentile(errors, pixels, ERROR_PERCENTILE), variance = 0;
+    double variance = 0;
     for (int y = 0; y < height; y += TILE)
         for (int x = 0; x < width; x += TILE)
             variance += tile_variance(errors, width, height, x, y, figure);

@@ -25,8 +25,10 @@ double error_percentile(const float *errors, size_t count, double part);
  *
  * Which pixels are easy and which are not is not by chance: only where some of a small tile's
  * errors are above the figure and some below is it chance that decides, for all pixels of a patch
- * of noise alike. */
-double error_bound(const float *errors, int width, int height);
+ * of noise alike.
+ *
+ * figure  error_percentile of them for ERROR_PERCENTILE. */
+double error_bound(const float *errors, int width, int height, double figure);
 
 /* Find what ERROR_PERCENTILE of the pixels of a picture differ by less from a reference, relative
  * to its luminance; both linear RGB.  Pixels that are no numbers in either are left out.  Returns

@@ -339,14 +339,16 @@ ErrorFigure error_figure(const ErrorMap *map)
     float *errors = map->scratch;
     ErrorFigure figure = {.is_known = true};
     fill_errors(map, mean, 1, 0, errors);
-    figure.noise = error_percentile(errors, pixels, ERROR_PERCENTILE);
+    figure.noise = figure.whole = error_percentile(errors, pixels, ERROR_PERCENTILE);
     if (!is_zero(map->bias, pixels)) {
         fill_errors(map, mean, 0, 1, errors);
         figure.bias = error_percentile(errors, pixels, ERROR_PERCENTILE);
         fill_errors(map, mean, 1, 1, errors);
+        figure.whole = error_percentile(errors, pixels, ERROR_PERCENTILE);
     }
-    figure.whole = fmax(least, error_percentile(errors, pixels, ERROR_PERCENTILE));
-    figure.bound = BOUND_MARGIN * fmax(least, error_bound(errors, map->width, map->height));
+    double bound = error_bound(errors, map->width, map->height, figure.whole);
+    figure.bound = BOUND_MARGIN * fmax(least, bound);
+    figure.whole = fmax(least, figure.whole);
     return figure;
 }
 

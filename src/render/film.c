@@ -179,7 +179,7 @@ double film_linear(const SceneSettings *settings, double v)
 {
     if (settings->is_gamma_off)
         return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
-    return v > 0 ? pow(v, settings->assumed_gamma) : 0;
+    return !(v > 0) ? 0 : settings->assumed_gamma == 1 ? v : pow(v, settings->assumed_gamma);
 }
 
 double film_slope(const SceneSettings *settings, double value)

@@ -56,7 +56,8 @@ static void the_bound_holds_in_nine_of_ten_cases(void **state)
             Rng rng = rng_at(1, k, i % WIDTH / 4 + 100 * (i / WIDTH / 4));
             errors[i] = (float)fabs(normal(&rng));
         }
-        held += error_bound(errors, WIDTH, WIDTH) >= 1.95996;
+        double figure = error_percentile(errors, WIDTH * WIDTH, ERROR_PERCENTILE);
+        held += error_bound(errors, WIDTH, WIDTH, figure) >= 1.95996;
     }
     /* Standard error 0.015 of the share; a tile holds but four patches, so the bound is rough. */
     assert_true(fabs((double)held / CASES - 0.9) < 4 * 0.015);
@@ -69,7 +70,8 @@ static void what_is_sure_widens_no_bound(void **state)
     static float errors[64 * 64];
     for (size_t i = 0; i < 64 * 64; i++)
         errors[i] = i / 64 < 8 ? 1e3f : 1;
-    assert_true(error_bound(errors, 64, 64) == error_percentile(errors, 64 * 64, 0.95));
+    double figure = error_percentile(errors, 64 * 64, ERROR_PERCENTILE);
+    assert_true(error_bound(errors, 64, 64, figure) == figure);
 }
 
 /* --- halves --------------------------------------------------------------------------------- */
