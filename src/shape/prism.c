@@ -363,9 +363,11 @@ static bool prism_list(const Shape *shape, const Line *line, ShapeScratch *scrat
     int count = scratch->count - base;
     crossings_sort(scratch->items + base, count);
     is_inside ^= starts_inside(&l, scratch->items + base, count);
-    Crossing cap = cap_crossing(shape, &l, true);
+    Crossing cap = {.t = 0};
     bool has_cap = is_inside;
     int written = base;
+    if (has_cap)
+        cap = cap_crossing(shape, &l, true);
     if (has_cap) /* room for the cap in front */
         scratch_push(scratch, &cap);
     if (has_cap && scratch->is_overflown)
@@ -374,16 +376,18 @@ static bool prism_list(const Shape *shape, const Line *line, ShapeScratch *scrat
         memmove(scratch->items + base + 1, scratch->items + base, (size_t)count * sizeof cap);
         scratch->items[written++] = cap;
     }
-    for (int i = base + has_cap; i < base + has_cap + count; i++) {
+    bool is_done = has_cap && line_ends_with(line, &cap);
+    for (int i = base + has_cap; i < base + has_cap + count && !is_done; i++) {
         const Crossing *found = &scratch->items[i];
         if (found->t < l.in || found->t >= l.out)
             continue;
         is_inside = !is_inside;
         Crossing wall = wall_crossing(shape, &l, line, found, is_inside);
         scratch->items[written++] = wall;
+        is_done = line_ends_with(line, &wall);
     }
     scratch->count = written;
-    if (is_inside) {
+    if (is_inside && !is_done) {
         cap = cap_crossing(shape, &l, false);
         scratch_push(scratch, &cap);
     }

@@ -331,8 +331,11 @@ bool revolve_list(const Shape *shape, const Line *line, ShapeScratch *scratch)
     is_inside ^= push_lids(shape->u.revolve, &l, scratch);
     crossings_sort(scratch->items + base, scratch->count - base);
     bool is_entry = !is_inside;
-    for (int i = base; i < scratch->count; i++, is_entry = !is_entry)
+    for (int i = base; i < scratch->count; i++, is_entry = !is_entry) {
         finish(shape, &l, &ray, line, is_entry, &scratch->items[i]);
+        if (line_ends_with(line, &scratch->items[i]))
+            scratch->count = i + 1;
+    }
     return is_inside;
 }
 

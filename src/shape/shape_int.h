@@ -183,6 +183,12 @@ static inline bool line_wants(const Line *line, double t)
     return t >= line->near && t <= line->far;
 }
 
+/* Is nothing wanted beyond a crossing? */
+static inline bool line_ends_with(const Line *line, const Crossing *c)
+{
+    return line->is_first_only && c->is_visible && c->t > line->near && c->t < line->far;
+}
+
 /* Move a t that is exact to a few of its own ulps to where it is early for sure. */
 static inline double earlier(double t)
 {

@@ -161,10 +161,10 @@ static void find_hits(const Shape *shape, const LocalRay *ray, double wanted, Le
     Separators at;
     separate(&l, lo, hi, &at);
     bool has_inner = l.major > 0 && l.major < l.minor;
-    add_roots(&l, &at, ray, has_inner ? -INFINITY : wanted, out);
+    add_roots(&l, &at, ray, wanted, out);
     if (has_inner) {
         l.side = -1;
-        add_roots(&l, &at, ray, -INFINITY, out);
+        add_roots(&l, &at, ray, wanted, out);
         sort_hits(out);
     }
 }
