@@ -31,6 +31,12 @@ static inline bool bound_is_empty(Bound b)
     return !(b.lo.x <= b.hi.x && b.lo.y <= b.hi.y && b.lo.z <= b.hi.z);
 }
 
+static inline bool bound_holds(const Bound *b, V3 p)
+{
+    return p.x >= b->lo.x && p.x <= b->hi.x && p.y >= b->lo.y && p.y <= b->hi.y &&
+           p.z >= b->lo.z && p.z <= b->hi.z;
+}
+
 static inline bool bound_is_finite(Bound b) { return v3_is_finite(b.lo) && v3_is_finite(b.hi); }
 
 static inline V3 bound_center(Bound b) { return v3_scale(v3_add(b.lo, b.hi), 0.5); }

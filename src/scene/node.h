@@ -19,7 +19,7 @@ typedef struct Material {
 } Material;
 
 enum {
-    NODE_DEPTH_MAX = 200,         /* what nests deeper is refused: every walk is recursive */
+    NODE_DEPTH_MAX = 1000,        /* what nests deeper is refused: every walk is recursive */
     NODE_COPIES_MAX = 10 * 1000 * 1000 /* copies of declared objects, counted by their nodes */
 };
 

@@ -3,7 +3,7 @@
  * What convex solids share along a line is one stretch of it: from the last of their entries to
  * the first of their exits.  No lists and no sorting are needed, and the other children need
  * be asked only about that stretch.  SPDX-License-Identifier: Apache-2.0 */
-#include "shape/shape_int.h"
+#include "shape/csg_int.h"
 
 #include <string.h>
 
@@ -131,7 +131,11 @@ bool convex_core(const Shape *node, const Ray *ray, double near, double far, Con
             return false;
     if (node->plane_blocks && node->plane_count == node->convex_count)
         return true;
-    for (int i = 0; i < node->child_count; i++) {
+    /* Convex leaves bound the whole, so that none is in the index. */
+    const CsgIndex *index = node->index;
+    int count = index ? index->plain_count : node->child_count;
+    for (int k = 0; k < count; k++) {
+        int i = index ? (int)index->plain[k] : k;
         const Shape *leaf = node->children[i];
         if (!leaf->is_convex_leaf || (node->plane_blocks && leaf->kind == SHAPE_PLANE))
             continue;
@@ -177,12 +181,11 @@ void convex_pack_planes(Arena *arena, Shape *node)
     node->plane_blocks = blocks;
 }
 
-void convex_push(const ConvexEnd *end, uint32_t slot, ShapeScratch *scratch)
+void convex_push(const ConvexEnd *end, ShapeScratch *scratch)
 {
     Crossing crossing;
     crossing_fill(end->leaf, &end->hit, &crossing);
     if (end->leaf->is_inverted)
         crossing_invert(&crossing);
-    crossing.child = slot;
     scratch_push(scratch, &crossing);
 }

@@ -50,11 +50,10 @@ bool hits_closest(const Shape *leaf, const LeafHits *hits, const Ray *ray, Cross
     return false;
 }
 
-/* Start the scratch afresh for a part of a line. */
-static Line begin_line(const Ray *ray, double near, double far, ShapeScratch *scratch)
+Line scratch_line(const Ray *ray, double near, double far, ShapeScratch *scratch)
 {
     scratch->count = 0;
-    scratch->state_count = 0;
+    scratch->slot_count = scratch->entry_count = 0;
     scratch->is_overflown = false;
     return (Line){ray, v3(1 / ray->d.x, 1 / ray->d.y, 1 / ray->d.z), near, far, false};
 }
@@ -74,7 +73,7 @@ static bool first_of_list(const ShapeScratch *scratch, const Ray *ray, Crossing 
 
 static bool list_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Crossing *out)
 {
-    Line line = begin_line(ray, ray->tmin, ray->tmax, scratch);
+    Line line = scratch_line(ray, ray->tmin, ray->tmax, scratch);
     csg_list(shape, &line, scratch);
     return first_of_list(scratch, ray, out);
 }
@@ -91,7 +90,7 @@ static bool leaf_closest(const Shape *leaf, const Ray *ray, ShapeScratch *scratc
         leaf_hits(leaf, ray, &hits);
         is_hit = hits_closest(leaf, &hits, ray, out);
     } else {
-        Line line = begin_line(ray, ray->tmin, ray->tmax, scratch);
+        Line line = scratch_line(ray, ray->tmin, ray->tmax, scratch);
         line.is_first_only = true;
         if (leaf->is_finished && !line_cut(&line, &leaf->reach))
             return false;
@@ -157,8 +156,10 @@ static Answer clipped_closest(const Shape *leaf, const Ray *ray, ShapeScratch *s
 
 bool shape_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Crossing *out)
 {
-    if (shape->kind >= SHAPE_UNION)
-        return list_closest(shape, ray, scratch, out);
+    if (shape->kind >= SHAPE_UNION) {
+        bool has_index = shape->is_finished && shape->index && shape->clip_count == 0;
+        return (has_index ? csg_first : list_closest)(shape, ray, scratch, out);
+    }
     if (shape->clip_count == 0)
         return leaf_closest(shape, ray, scratch, out);
     Answer answer = clipped_closest(shape, ray, scratch, out);
@@ -177,7 +178,7 @@ bool shape_is_met(const Shape *shape, const Ray *ray, ShapeScratch *scratch)
 
 void shape_crossings(const Shape *shape, const Ray *ray, ShapeScratch *scratch, CrossList *out)
 {
-    Line line = begin_line(ray, -INFINITY, INFINITY, scratch);
+    Line line = scratch_line(ray, -INFINITY, INFINITY, scratch);
     out->is_inside_before = csg_list(shape, &line, scratch);
     out->items = scratch->items;
     out->count = scratch->count;
@@ -227,15 +228,21 @@ static bool count_inside(Shape *const *parts, int count, V3 p, bool is_all)
     return is_all;
 }
 
+/* Is p inside some child of a node, or all of them? */
+static bool node_is_inside(const Shape *node, V3 p)
+{
+    bool is_all = node->kind == SHAPE_INTERSECTION;
+    if (node->is_finished && node->index)
+        return index_holds(node, p, is_all);
+    return count_inside(node->children, node->child_count, p, is_all);
+}
+
 bool shape_is_inside(const Shape *shape, V3 p)
 {
-    const Bound *b = &shape->reach;
-    if (shape->is_finished && (p.x < b->lo.x || p.x > b->hi.x || p.y < b->lo.y || p.y > b->hi.y ||
-                               p.z < b->lo.z || p.z > b->hi.z))
+    if (shape->is_finished && !bound_holds(&shape->reach, p))
         return shape->is_inside_beyond;
-    bool is_inside = shape->kind < SHAPE_UNION ? leaf_is_inside(shape, p)
-                                               : count_inside(shape->children, shape->child_count,
-                                                              p, shape->kind == SHAPE_INTERSECTION);
+    bool is_inside =
+        shape->kind < SHAPE_UNION ? leaf_is_inside(shape, p) : node_is_inside(shape, p);
     return is_inside != shape->is_inverted &&
            count_inside(shape->clips, shape->clip_count, p, true);
 }
@@ -299,7 +306,8 @@ void shape_scratch_free(ShapeScratch *scratch)
     if (!scratch)
         return;
     mem_free(scratch->items);
-    mem_free(scratch->states);
+    mem_free(scratch->slots);
+    mem_free(scratch->entries);
     mem_free(scratch->triangles);
     mem_free(scratch->room);
     mem_free(scratch);

@@ -43,6 +43,7 @@ typedef struct SweepData SweepData;
 typedef struct HeightData HeightData;
 typedef struct ReachBlock ReachBlock;
 typedef struct PlaneBlock PlaneBlock;
+typedef struct CsgIndex CsgIndex;
 
 /* Forms in object space; Shape.xform takes them to the world.  Spheres, boxes, planes and
  * triangles fold simple transforms into their numbers, so that most have none. */
@@ -175,7 +176,7 @@ typedef struct ParametricData ParametricData; /* shape/parametric_int.h */
 
 struct Shape {
     ShapeKind kind;
-    bool is_inverted;
+    bool is_inverted;    /* of a leaf */
     bool is_transformed; /* xform is not the identity */
     bool is_open;        /* of a leaf: it has no caps, though they bound it */
     uint32_t surface;    /* of a leaf: which Surface of the scene it shows */
@@ -216,6 +217,7 @@ struct Shape {
     bool is_inside_beyond; /* what lies outside `reach` is inside the solid */
     Bound reach;           /* around every crossing, visible or not */
     const ReachBlock *reaches; /* of the children, packed; NULL: not made */
+    const CsgIndex *index;     /* of many children; NULL: none */
     const PlaneBlock *planes;  /* of an intersection, packed; NULL: not made */
     int plane_count, plane_blocks;
 };
@@ -228,7 +230,7 @@ typedef struct Crossing {
                           bounds overlap may be a touching, or a near miss. */
     const Shape *leaf; /* the primitive crossed */
     uint32_t part;     /* which side, cap or triangle of the leaf */
-    uint32_t child;    /* used while lists are merged */
+    uint32_t child, order; /* used while lists are merged */
     int8_t change; /* +1 the line enters the solid here, -1 it leaves, 0 a sheet or inner wall */
     int8_t leaf_change; /* the same for the leaf alone (inversions above it applied); where walls
                            of several leaves coincide, the net change: 0 at a wall shared by two */
@@ -333,12 +335,14 @@ void shape_transform(Shape *shape, const Xform *xform);
 /* Deep copy (mesh data shared), or NULL. */
 Shape *shape_copy(Arena *arena, const Shape *shape);
 
-/* Swap inside and outside, in place (De Morgan is implied: the flag sits on the node). */
+/* Swap inside and outside, in place: of a union, intersection or merge the children are inverted,
+ * and it becomes an intersection or a merge.  So the inner walls of a union are gone for good. */
 void shape_invert(Shape *shape);
 
-/* Derive what speeds up the questions below (bounds of CSG children), once the shape, its
- * children and clips are complete.  Changing any of them afterwards needs another call on
- * the root.  Without it, or when memory is out, answers are the same, only slower. */
+/* Derive what speeds up the questions below (bounds of CSG children, an index of many), once the
+ * shape, its children and clips are complete; nodes within nodes may dissolve.  Changing any of
+ * them afterwards needs another call on the root.  Without it, or when memory is out, answers are
+ * the same, only slower. */
 void shape_finish(Arena *arena, Shape *shape);
 
 /* --- asking (any thread) ---------------------------------------------------------------- */

@@ -5,6 +5,8 @@
  * that misses it needs no list.  SPDX-License-Identifier: Apache-2.0 */
 #include "shape/shape_int.h"
 
+#include <string.h>
+
 /* Narrow `box` to the reach of what all `parts` must contain; returns false if one of them is
  * not inside beyond its reach, and then the box is as narrow as they say. */
 static void narrow_to(Shape *const *parts, int count, Bound *box, bool *is_inside_beyond)
@@ -127,3 +129,27 @@ bool line_cut(Line *line, const Bound *box)
     return true;
 }
 #undef CUT
+
+void block_cut(const BoxBlock *b, const Line *line, BlockCut *out)
+{
+    const double o[3] = {line->ray->o.x, line->ray->o.y, line->ray->o.z};
+    const double inverse[3] = {line->inverse.x, line->inverse.y, line->inverse.z};
+    const Lanes zero = {0};
+    Lanes near = zero + line->near, far = zero + line->far;
+    for (int axis = 0; axis < 3; axis++) {
+        bool is_back = inverse[axis] < 0;
+        Lanes first, last;
+        memcpy(&first, is_back ? b->hi[axis] : b->lo[axis], sizeof first);
+        memcpy(&last, is_back ? b->lo[axis] : b->hi[axis], sizeof last);
+        first = (first - o[axis]) * inverse[axis];
+        last = (last - o[axis]) * inverse[axis];
+        near = LANES_PICK(first > near, first, near);
+        far = LANES_PICK(last < far, last, far);
+    }
+    /* The t are exact to a few of their own ulps. */
+    const double slack = 8 * EPS_DOUBLE;
+    near *= LANES_PICK(near < zero, zero + (1 + slack), zero + (1 - slack));
+    far *= LANES_PICK(far < zero, zero + (1 - slack), zero + (1 + slack));
+    memcpy(out->near, &near, sizeof near);
+    memcpy(out->far, &far, sizeof far);
+}

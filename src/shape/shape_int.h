@@ -205,9 +205,31 @@ typedef __typeof__((Lanes){0} < (Lanes){0}) LaneMask;
 #define LANES_PICK(mask, a, b) ((Lanes)(((mask) & (LaneMask)(a)) | (~(mask) & (LaneMask)(b))))
 #define LANES_ABS(x) LANES_PICK((x) < 0, -(x), (x))
 
-/* The reaches of four children, side by side so that they are cut together. */
-struct ReachBlock {
+/* Boxes side by side, so that they are cut together. */
+typedef struct BoxBlock {
     double lo[3][BLOCK], hi[3][BLOCK];
+} BoxBlock;
+
+/* Set box k of a block. */
+static inline void block_set(BoxBlock *block, int k, const Bound *box)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        block->lo[axis][k] = v3_at(box->lo, axis);
+        block->hi[axis][k] = v3_at(box->hi, axis);
+    }
+}
+
+/* The parts of a line within the boxes of a block; near > far where it misses one. */
+typedef struct BlockCut {
+    double near[BLOCK], far[BLOCK];
+} BlockCut;
+
+/* As line_cut, for a block of boxes at once. */
+void block_cut(const BoxBlock *block, const Line *line, BlockCut *out);
+
+/* The reaches of four children. */
+struct ReachBlock {
+    BoxBlock boxes;
     bool is_inside_beyond[BLOCK];
 };
 
@@ -222,14 +244,29 @@ struct PlaneBlock {
  * lies outside it. */
 Bound shape_reach(const Shape *shape, bool *is_inside_beyond);
 
+/* A child of a node whose children are merged. */
+typedef struct ChildSlot {
+    uint32_t place; /* its number, in written order */
+    bool is_inside; /* the line is in it, where the sweep is */
+} ChildSlot;
+
+/* What a line meets next in the index of a node: a child of the shape or a node of the tree. */
+typedef struct IndexEntry {
+    double near; /* where the line may enter it */
+    uint32_t what;
+    bool is_child;
+} IndexEntry;
+
 /* The scratch memory: a stack of crossings. */
 struct ShapeScratch {
     Crossing *items;
     size_t capacity;
     int count;
     bool is_overflown;
-    uint8_t *states; /* of the children of the nodes being merged */
-    size_t state_capacity, state_count;
+    ChildSlot *slots; /* of the nodes being merged */
+    size_t slot_capacity, slot_count;
+    IndexEntry *entries; /* of the nodes whose index is being walked */
+    size_t entry_capacity, entry_count;
     TriHit *triangles;
     size_t triangle_capacity;
     void *room; /* for one leaf at a time */
@@ -240,11 +277,14 @@ struct ShapeScratch {
  * the scratch says so, when memory is out. */
 void *scratch_room(ShapeScratch *scratch, size_t size);
 
+/* Start the scratch afresh for a part of a line. */
+Line scratch_line(const Ray *ray, double near, double far, ShapeScratch *scratch);
+
 /* Push a crossing; when the stack is full or memory is out it is dropped and the scratch says
  * so. */
 void scratch_push(ShapeScratch *scratch, const Crossing *crossing);
 
-/* Sort by t, then by child, in place. */
+/* Sort by t, then by child, in place; what is alike in both stays in order. */
 void crossings_sort(Crossing *items, int count);
 
 /* Find the crossings of a leaf that has few, before any inversion. */
@@ -278,8 +318,8 @@ bool shape_is_convex_leaf(const Shape *shape);
 /* Find the core of an intersection; false when it is empty on [near, far]. */
 bool convex_core(const Shape *node, const Ray *ray, double near, double far, ConvexCore *core);
 
-/* Push an end of the core as a crossing of child `slot`. */
-void convex_push(const ConvexEnd *end, uint32_t slot, ShapeScratch *scratch);
+/* Push an end of the core as a crossing. */
+void convex_push(const ConvexEnd *end, ShapeScratch *scratch);
 
 /* Push the crossings of a leaf, without inversion and clips; returns whether the line starts
  * inside. */
@@ -288,6 +328,20 @@ bool leaf_list(const Shape *shape, const Line *line, ShapeScratch *scratch);
 /* Push the crossings of any shape along a line, inversion and clips applied; returns whether the
  * line starts inside. */
 bool csg_list(const Shape *shape, const Line *line, ShapeScratch *scratch);
+
+/* Find the first visible crossing, tmin < t < tmax, of a finished node that has an index and no
+ * clips. */
+bool csg_first(const Shape *node, const Ray *ray, ShapeScratch *scratch, Crossing *out);
+
+/* Dissolve nodes in nodes of their own kind. */
+void csg_flatten(Arena *arena, Shape *node);
+
+/* Give a node with many children an index over those that are bounded; when there are few of
+ * them, or memory is out, it has none. */
+void index_build(Arena *arena, Shape *node);
+
+/* Is p inside some child in the index, or (is_all) in all of them? */
+bool index_holds(const Shape *node, V3 p, bool is_all);
 
 /* Fill a crossing from a leaf's hit (no inversion applied). */
 static inline void crossing_fill(const Shape *leaf, const LeafHit *hit, Crossing *out)

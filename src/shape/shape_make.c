@@ -128,39 +128,45 @@ Shape *shape_copy(Arena *arena, const Shape *shape)
 
 void shape_invert(Shape *shape)
 {
-    shape->is_inverted = !shape->is_inverted;
     shape->is_finished = false;
+    if (shape->kind < SHAPE_UNION) {
+        shape->is_inverted = !shape->is_inverted;
+        return;
+    }
+    /* The complement of a union is what the complements share, and the other way round. */
+    shape->kind = shape->kind == SHAPE_INTERSECTION ? SHAPE_MERGE : SHAPE_INTERSECTION;
+    for (int i = 0; i < shape->child_count; i++)
+        shape_invert(shape->children[i]);
 }
 
 /* Pack the reaches of a node's children; returns NULL when there are none or memory is out. */
 static const ReachBlock *pack_reaches(Arena *arena, const Shape *node)
 {
-    if (node->child_count == 0)
+    if (node->child_count == 0 || node->index)
         return NULL;
     int blocks = (node->child_count + BLOCK - 1) / BLOCK;
     ReachBlock *out = ARENA_ARRAY(arena, ReachBlock, (size_t)blocks);
     for (int i = 0; out && i < blocks * BLOCK; i++) {
         ReachBlock *block = &out[i / BLOCK];
         Bound reach = i < node->child_count ? node->children[i]->reach : BOUND_EMPTY;
-        for (int axis = 0; axis < 3; axis++) {
-            block->lo[axis][i % BLOCK] = v3_at(reach.lo, axis);
-            block->hi[axis][i % BLOCK] = v3_at(reach.hi, axis);
-        }
+        block_set(&block->boxes, i % BLOCK, &reach);
         if (i < node->child_count)
             block->is_inside_beyond[i % BLOCK] = node->children[i]->is_inside_beyond;
     }
     return out;
 }
 
-void shape_finish(Arena *arena, Shape *shape)
+/* shape_finish for a flat tree, or a part of one. */
+static void finish(Arena *arena, Shape *shape)
 {
     for (int i = 0; i < shape->child_count; i++)
-        shape_finish(arena, shape->children[i]);
+        finish(arena, shape->children[i]);
     for (int i = 0; i < shape->clip_count; i++)
         shape_finish(arena, shape->clips[i]);
     shape->reach = shape_reach(shape, &shape->is_inside_beyond);
     shape->is_bounded =
         shape->kind < SHAPE_UNION && bound_is_finite(shape_ops(shape)->bound(shape));
+    index_build(arena, shape);
     shape->reaches = pack_reaches(arena, shape);
     shape->is_convex_leaf = shape_is_convex_leaf(shape);
     shape->convex_count = 0;
@@ -168,4 +174,11 @@ void shape_finish(Arena *arena, Shape *shape)
         shape->convex_count += shape->children[i]->is_convex_leaf;
     convex_pack_planes(arena, shape);
     shape->is_finished = true;
+}
+
+void shape_finish(Arena *arena, Shape *shape)
+{
+    if (shape->kind >= SHAPE_UNION)
+        csg_flatten(arena, shape);
+    finish(arena, shape);
 }

@@ -142,6 +142,12 @@ InteriorStep interiors_pass(const Tracer *tracer, const Passage *passages, int c
     return step;
 }
 
+/* Has a member of an intersection been turned inside out, to cut the others? */
+static bool is_cutter(const Shape *shape)
+{
+    return shape->child_count > 0 ? shape->is_inside_beyond : shape->is_inverted;
+}
+
 /* Find the leaf that lends its interior to a point inside a shape: the first child that holds
  * it, in an intersection one that was not inverted. */
 static const Shape *leaf_around(const Shape *shape, V3 p)
@@ -150,7 +156,7 @@ static const Shape *leaf_around(const Shape *shape, V3 p)
         const Shape *next = shape->children[0];
         for (int i = 0; i < shape->child_count; i++) {
             const Shape *child = shape->children[i];
-            if (!child->is_inverted && shape_is_inside(child, p)) {
+            if (!is_cutter(child) && shape_is_inside(child, p)) {
                 next = child;
                 break;
             }
@@ -163,7 +169,7 @@ static const Shape *leaf_around(const Shape *shape, V3 p)
 /* Volumes order the list: what is inside is smaller. */
 static double volume(const Object *object)
 {
-    if (!bound_is_finite(object->bound) || object->shape->is_inverted)
+    if (!bound_is_finite(object->bound) || object->shape->is_inside_beyond)
         return INFINITY;
     V3 size = v3_sub(object->bound.hi, object->bound.lo);
     return size.x * size.y * size.z;

@@ -236,7 +236,7 @@ static bool is_at_surface(const Shape *shape, V3 p, double touch)
 /* Add the parts of a shape: members of a union cast shadows each for itself. */
 static void add_shape(Builder *b, const Shape *shape, bool is_opaque)
 {
-    bool is_plain = shape->kind == SHAPE_UNION && !shape->is_inverted && shape->clip_count == 0;
+    bool is_plain = shape->kind == SHAPE_UNION && shape->clip_count == 0;
     if (is_plain && b->count + (size_t)shape->child_count <= PARTS_MAX) {
         for (int i = 0; i < shape->child_count; i++)
             add_shape(b, shape->children[i], is_opaque);

@@ -166,7 +166,7 @@ static void test_clipped_and_inverted_unions_stay_whole(void **state)
     assert_int_equal(w->scene->object_count, 2);
     assert_int_equal(w->scene->surface_count, 4);
     assert_int_equal(w->scene->objects[0].shape->clip_count, 1);
-    assert_true(w->scene->objects[1].shape->is_inverted);
+    assert_int_equal(w->scene->objects[1].shape->kind, SHAPE_INTERSECTION);
     assert_true(shape_is_inside(w->scene->objects[1].shape, v3(9, 9, 9)));
     assert_false(shape_is_inside(w->scene->objects[1].shape, v3(0, 0, 0)));
     /* The clip counts for the inside of the clipped one. */
