@@ -25,6 +25,7 @@ LIBOBJ   := $(LIBSRC:%.c=$(B)/%.o) $(CXXSRC:%.cpp=$(B)/%.o)
 QUICK    := csg_showpiece macros_loops mesh_vase
 UNIT     := $(patsubst %.c,$(B)/%,$(wildcard tests/unit/*_test.c tests/physics/*_test.c \
             tests/hard/*_test.c tests/fault/*_test.c))
+HARD     := $(filter $(B)/tests/hard/%,$(UNIT))
 PHYSICS  := $(filter $(B)/tests/physics/%,$(UNIT))
 BENCH    := $(patsubst %.cpp,$(B)/%,$(wildcard tests/bench/*_bench.cpp)) \
             $(patsubst %.c,$(B)/%,$(wildcard tests/bench/*_bench.c))
@@ -98,6 +99,12 @@ check-physics: deps ## print what the tests of light measure, what is expected, 
 .PHONY: check-physics check-physics-built
 check-physics-built: $(PHYSICS)
 	$(Q)tests/physics/table.sh $(PHYSICS)
+
+check-hard: deps ## run the hard cases, with povray beside, into tests/hard/README.md (a quarter of an hour)
+	$(Q)$(MAKE) --no-print-directory check-hard-built
+.PHONY: check-hard check-hard-built
+check-hard-built: $(HARD)
+	$(Q)tests/hard/table.sh $(HARD)
 
 parity: deps ## compare pictures and times with the installed povray
 	$(Q)$(MAKE) --no-print-directory $(B)/pms

@@ -1,6 +1,7 @@
 /* pms render: a scene in, OpenEXR and PNG out.  SPDX-License-Identifier: Apache-2.0 */
 #include "cli/cli.h"
 #include "cli/progress.h"
+#include "cli/replay.h"
 #include "cli/verdict.h"
 
 #include "base/file.h"
@@ -144,16 +145,17 @@ static Status prepare(Job *job, RenderOptions *options)
 Status render_cmd(Args *args)
 {
     TRY(args_want_operands(args, 1, "one scene file"));
-    if (args->output_count == 0)
+    bool is_replay = args_has(args, OPT_REPLAY);
+    if (args->output_count == 0 && !is_replay)
         TRY(default_outputs(args));
     Scene *scene;
     RenderOptions options;
     Job job = {.args = args};
     TRY(args_load_scene(args, 0, &scene, &job.parse_seconds));
     job.scene = scene;
-    Status status = prepare(&job, &options);
+    Status status = is_replay ? args_render_options(args, &options) : prepare(&job, &options);
     if (status == OK)
-        status = render_loaded(&job, &options);
+        status = is_replay ? replay_run(args, scene, &options) : render_loaded(&job, &options);
     scene_free(scene);
     return status;
 }

@@ -67,4 +67,37 @@ void eye_thread_free(EyeThread *eye, Stats *add_to);
  * Returns false, counts it and makes the sample black when some of it is not a number. */
 bool eye_sample(EyeThread *eye, double x, double y, uint32_t pixel, uint32_t index, EyeSample *out);
 
+/* What became of one ray of a sample. */
+typedef struct EyeStep {
+    RayKind kind;
+    int level; /* rays before it that count */
+    Ray ray;
+    const Object *object; /* that it met; NULL: none */
+    double t;             /* what follows holds where it met something */
+    V3 p, n;              /* n: unit, geometric, outward */
+    double p_error;       /* bound on the distance of p from the surface */
+    bool is_entering;
+    Rgb through; /* the share of the light from here that counts */
+    Rgb light;   /* that the sample got here; what other rays bring is told of those */
+} EyeStep;
+
+/* Is all of it numbers? */
+bool eye_step_is_finite(const EyeStep *step);
+
+/* One who is told of every ray of a sample, in the order that they are traced in. */
+typedef struct EyeWitness {
+    void (*step)(void *ctx, const EyeStep *step);
+    void *ctx;
+} EyeWitness;
+
+/* Let `witness`, borrowed, see the samples to come; NULL: nobody. */
+void eye_watch(EyeThread *eye, const EyeWitness *witness);
+
+/* Return how many samples of this thread were no numbers. */
+uint64_t eye_fault_count(const EyeThread *eye);
+
+/* Trace a sample that is no number again; returns the object at which it first was none: NULL if it
+ * is the sky, or the camera. */
+const Object *eye_find_fault(EyeThread *eye, double x, double y, uint32_t pixel, uint32_t index);
+
 #endif

@@ -56,6 +56,7 @@ struct EyeThread {
     Rng rng;                    /* of the sample being traced */
     uint64_t eye_pass, path_pass, media_pass; /* what the random numbers of samples are of */
     FreshRecords *fresh;        /* not NULL: the cache is being filled, no picture made */
+    const EyeWitness *witness;  /* NULL: nobody */
     PathKeys path;
     /* Shadow samples of the area light at hand, valid where the mark is the current one. */
     Rgb *grid;
@@ -138,6 +139,19 @@ typedef struct LightMeeting {
  *         is for; scene units. */
 bool light_meet(const Light *light, double light_radius, const Ray *ray, double tmax,
                 double length, LightMeeting *out);
+
+/* Tell the witness of a ray.
+ *
+ * hit    what it meets; NULL: nothing.
+ * light  that the sample has got from there. */
+void witness_tell(const EyeThread *eye, const Ray *ray, RayKind kind, int level, const Hit *hit,
+                  Rgb through, Rgb light);
+
+/* Return the light of all parts. */
+static inline Rgb radiance_sum(const Radiance *r)
+{
+    return rgb_add(rgb_add(r->part[PART_DIRECT], r->part[PART_CAUSTIC]), r->part[PART_INDIRECT]);
+}
 
 /* Fill limits[0..n] for up to n rays: the average of m is good enough when its variance is
  * below limits[m]. */

@@ -282,8 +282,12 @@ void path_radiance(EyeThread *eye, const Ray *ray, const Interiors *interiors, R
             goes_on = survives(eye, &path);
             continue;
         }
+        Rgb before = radiance_sum(out);
         if (!is_hit) {
             add_sky(eye, &path, out);
+            if (eye->witness)
+                witness_tell(eye, &path.ray, path.kind, path.turns, NULL, path.weight,
+                             rgb_sub(radiance_sum(out), before));
             break;
         }
         path_weigh(&path, interiors_fade(&path.inside, hit.t));
@@ -291,6 +295,9 @@ void path_radiance(EyeThread *eye, const Ray *ray, const Interiors *interiors, R
         if (path.turns++ > 0)
             surface_sample(&eye->trace, &path.ray, &hit, &path.inside, &s);
         add_surface(eye, &path, &s, out);
+        if (eye->witness)
+            witness_tell(eye, &path.ray, path.kind, path.turns - 1, &hit, path.weight,
+                         rgb_sub(radiance_sum(out), before));
         goes_on = leave(eye, &path, &hit, &s, out) && survives(eye, &path);
     }
     eye->trace.is_dimmed = false;

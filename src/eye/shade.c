@@ -42,11 +42,6 @@ void add_estimate(Radiance *out, LightPart part, Rgb through, const LightEstimat
     add_part(out, PART_NOISE, through, estimate->noise);
 }
 
-static Rgb radiance_sum(const Radiance *r)
-{
-    return rgb_add(rgb_add(r->part[PART_DIRECT], r->part[PART_CAUSTIC]), r->part[PART_INDIRECT]);
-}
-
 static float channel_power(float sum, float power)
 {
     return sum > 0 ? powf(sum, power) / sum : 0;
@@ -160,8 +155,10 @@ static void add_indirect(EyeThread *eye, const Path *path, const SurfaceSample *
     add_estimate(out, PART_INDIRECT, path->through, &estimate);
 }
 
-static void add_surface(EyeThread *eye, const Path *path, const SurfaceSample *s, Radiance *out)
+static void add_surface(EyeThread *eye, const Path *path, const Hit *hit, const SurfaceSample *s,
+                        Radiance *out)
 {
+    Rgb before = radiance_sum(out);
     if (!eye->fresh) {
         Rgb direct = surface_glow(eye->trace.tracer, s);
         if (plan_has(eye->plan, FEATURE_LIGHTS))
@@ -174,6 +171,9 @@ static void add_surface(EyeThread *eye, const Path *path, const SurfaceSample *s
     }
     if (plan_has(eye->plan, FEATURE_GLOBAL_MAP))
         add_indirect(eye, path, s, out);
+    if (eye->witness)
+        witness_tell(eye, &path->ray, path->kind, path->level, hit, path->through,
+                     rgb_sub(radiance_sum(out), before));
     if (plan_has(eye->plan, FEATURE_REFLECTION))
         add_reflections(eye, path, s, out);
 }
@@ -237,6 +237,9 @@ static void radiance(EyeThread *eye, Path *path, Radiance *out, EyeSample *first
             eye->trace.stats.count[STAT_SKY_RAYS]++;
             Rgb sky = sky_light(eye, path->ray.d, path->is_mirrored, &behind);
             add_part(out, PART_DIRECT, path->through, sky);
+            if (eye->witness)
+                witness_tell(eye, &path->ray, path->kind, path->level, NULL, path->through,
+                             rgb_mul(path->through, sky));
             out->transmit = path->transmit * behind;
             return;
         }
@@ -249,7 +252,7 @@ static void radiance(EyeThread *eye, Path *path, Radiance *out, EyeSample *first
         path->from = hit.object;
         if (first && surfaces == 0)
             describe_first(&hit, &s, first);
-        add_surface(eye, path, &s, out);
+        add_surface(eye, path, &hit, &s, out);
         bool is_followed = s.has_transmission && plan_has(eye->plan, FEATURE_REFRACTION);
         if (is_followed && s.spectrum > 0) {
             split(eye, path, &hit, s.spectrum, out);

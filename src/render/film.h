@@ -32,6 +32,15 @@ typedef struct PixelSamples {
     uint16_t good; /* of them that could be used, when the pass is done */
 } PixelSamples;
 
+/* A sample that is no number: the first one of the film, by its pixel and then its own number. */
+typedef struct FilmFault {
+    uint64_t count; /* of such samples */
+    int x, y;
+    uint32_t index;
+    const Object *object; /* where it came to be; NULL: the sky or the camera */
+    bool is_told;         /* the user has been told of one, in this pass or before */
+} FilmFault;
+
 typedef struct Film {
     int width, height;
     int channels;    /* of a vector */
@@ -41,6 +50,7 @@ typedef struct Film {
     bool has_shared_indirect; /* the samples of a pass share photons or records of indirect light */
     bool has_clues;        /* the last layer of the image is what errors are estimated from */
     PixelSamples *samples; /* of all pixels, of one of many passes; NULL: as the options say */
+    FilmFault fault;       /* of the last time that the film was filled; count 0: none */
     Image image;
 } Film;
 

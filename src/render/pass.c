@@ -208,6 +208,20 @@ static int gather_rays(const Pass *pass)
     return rays > least ? (int)rays : least;
 }
 
+/* Once a render, and not of a miniature, whose pixels are others. */
+static void warn_of_fault(const Pass *pass, FilmFault *fault)
+{
+    if (fault->count == 0 || fault->is_told || pass->options->miniature ||
+        pass->options->render->replay)
+        return;
+    fault->is_told = true;
+    diag_warn(pass->diag, WARN_RENDER, fault->object ? fault->object->span : SPAN_NONE,
+              "light that is no number came from %s in sample %u of pixel %d,%d, the first of %llu "
+              "samples that are left out: --replay %d,%d tells more",
+              fault->object ? "here" : "the sky", fault->index, fault->x, fault->y,
+              (unsigned long long)fault->count, fault->x, fault->y);
+}
+
 static Status fill_film(Pass *pass, Film *film)
 {
     const RenderOptions *options = pass->options->render;
@@ -230,7 +244,9 @@ static Status fill_film(Pass *pass, Film *film)
                       .caustic_limits = pass->caustic_limits,
                       .global_limits = pass->global_limits};
     TRY(fill_cache(pass, &eye));
-    return tiles_render(pass->tracer, options, &eye, pass->diag, pass->stats, film);
+    TRY(tiles_render(pass->tracer, options, &eye, pass->diag, pass->stats, film));
+    warn_of_fault(pass, &film->fault);
+    return OK;
 }
 
 /* --- the pass ------------------------------------------------------------------------------- */

@@ -3,6 +3,7 @@
 #define PMS_RENDER_RENDER_H
 
 #include "base/stats.h"
+#include "eye/eye.h"
 #include "image/image.h"
 #include "photon/photon_pass.h"
 #include "plan/plan.h"
@@ -69,6 +70,16 @@ typedef struct ProgressiveOptions {
     void *tell_ctx;
 } ProgressiveOptions;
 
+/* One pixel alone is wanted, and all that becomes of its rays: the samples are those of the whole
+ * picture.  The functions are called by one thread at a time. */
+typedef struct Replay {
+    int x, y; /* pixels from the upper left */
+    EyeWitness witness;
+    /* Called after the steps of sample `index`, at (x, y) in the picture.  sample: what came of it;
+     * NULL: no number. */
+    void (*sample)(void *ctx, double x, double y, uint32_t index, const EyeSample *sample);
+} Replay;
+
 typedef struct RenderOptions {
     int width, height;
     int threads;             /* at least 1 */
@@ -86,6 +97,7 @@ typedef struct RenderOptions {
     bool has_error_picture;  /* a picture of the errors is asked for */
     PlanOptions plan;
     ProgressiveOptions progressive;
+    const Replay *replay;    /* NULL: the whole picture; not with plan.is_progressive */
     void (*progress)(void *ctx, const RenderProgress *progress);
     void *progress_ctx;
 } RenderOptions;

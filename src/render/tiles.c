@@ -19,11 +19,20 @@ typedef struct EyePass EyePass;
 /* What a sweep does with one block. */
 typedef void (*BlockFn)(EyePass *pass, FilmRect rect, int thread);
 
+/* The first sample of a thread that is no number. */
+typedef struct Fault {
+    bool is_found;
+    double x, y;
+    uint32_t pixel, index;
+} Fault;
+
 /* What one thread works with. */
 typedef struct Seat {
     EyeThread *eye;
     AaScratch scratch;
     const Film *film;
+    const Replay *replay;
+    Fault fault;
 } Seat;
 
 struct EyePass {
@@ -44,14 +53,36 @@ struct EyePass {
 
 /* --- blocks --------------------------------------------------------------------------------- */
 
+static void note_fault(Fault *fault, double x, double y, uint32_t pixel, uint32_t index)
+{
+    if (!fault->is_found || pixel < fault->pixel || (pixel == fault->pixel && index < fault->index))
+        *fault = (Fault){true, x, y, pixel, index};
+}
+
+/* Is it a sample of the pixel that is wanted?  Those at its corners are. */
+static bool is_replayed(const Replay *replay, double x, double y)
+{
+    return x >= replay->x && x <= replay->x + 1 && y >= replay->y && y <= replay->y + 1;
+}
+
 static bool sample_film(void *ctx, double x, double y, uint32_t pixel, uint32_t index,
                         float *vector)
 {
     Seat *seat = ctx;
     EyeSample sample = {.depth = INFINITY};
+    bool is_watched = seat->replay && is_replayed(seat->replay, x, y);
+    if (is_watched)
+        eye_watch(seat->eye, &seat->replay->witness);
     /* What is left of an interrupted picture is not looked at. */
-    bool is_good = !work_interrupted && eye_sample(seat->eye, x, y, pixel, index, &sample);
+    bool is_whole = !work_interrupted;
+    bool is_good = is_whole && eye_sample(seat->eye, x, y, pixel, index, &sample);
     film_vector(seat->film, &sample, vector);
+    if (is_watched) {
+        eye_watch(seat->eye, NULL);
+        seat->replay->sample(seat->replay->witness.ctx, x, y, index, is_good ? &sample : NULL);
+    }
+    if (is_whole && !is_good)
+        note_fault(&seat->fault, x, y, pixel, index);
     return is_good;
 }
 
@@ -116,10 +147,23 @@ static void report(EyePass *pass, size_t done, size_t count)
     pass->options->progress(pass->options->progress_ctx, &progress);
 }
 
+/* Is the block to be done?  Where one pixel is wanted, only the one that it is in, and those whose
+ * centres antialiasing compares with that. */
+static bool is_block_wanted(const EyePass *pass, FilmRect rect)
+{
+    const Replay *replay = pass->options->replay;
+    bool is_compared = pass->options->aa == AA_POV1 && pass->fn == block_centers;
+    int reach = is_compared ? FILM_BLOCK : 0;
+    return !replay || (replay->x >= rect.x1 - reach && replay->x < rect.x2 + reach &&
+                       replay->y >= rect.y1 - reach && replay->y < rect.y2 + reach);
+}
+
 static void do_block(void *ctx, size_t index, int thread)
 {
     EyePass *pass = ctx;
-    pass->fn(pass, film_block(pass->film, pass->side, index), thread);
+    FilmRect rect = film_block(pass->film, pass->side, index);
+    if (is_block_wanted(pass, rect))
+        pass->fn(pass, rect, thread);
     size_t done = atomic_fetch_add(&pass->done, 1) + 1;
     if (thread == 0)
         report(pass, done, film_block_count(pass->film, pass->side));
@@ -192,6 +236,7 @@ static Status make_seats(EyePass *pass, const Tracer *tracer, const EyeOptions *
     for (; pass->seat_count < threads; pass->seat_count++) {
         Seat *seat = &pass->seats[pass->seat_count];
         seat->film = pass->film;
+        seat->replay = pass->options->replay;
         TRY(aa_scratch_init(&seat->scratch, &pass->aa, pass->options->aa, diag));
         Status status = eye_thread_new(tracer, eye, diag, &seat->eye);
         if (status != OK) {
@@ -200,6 +245,26 @@ static Status make_seats(EyePass *pass, const Tracer *tracer, const EyeOptions *
         }
     }
     return OK;
+}
+
+/* Find the first of the samples that are no numbers, and where it became that. */
+static void find_fault(EyePass *pass)
+{
+    Fault first = {.is_found = false};
+    FilmFault *out = &pass->film->fault;
+    *out = (FilmFault){.is_told = out->is_told};
+    for (int i = 0; i < pass->seat_count; i++) {
+        const Fault *fault = &pass->seats[i].fault;
+        if (fault->is_found)
+            note_fault(&first, fault->x, fault->y, fault->pixel, fault->index);
+        out->count += eye_fault_count(pass->seats[i].eye);
+    }
+    if (!first.is_found)
+        return;
+    out->x = (int)fmin(first.x, pass->film->width - 1);
+    out->y = (int)fmin(first.y, pass->film->height - 1);
+    out->index = first.index;
+    out->object = eye_find_fault(pass->seats[0].eye, first.x, first.y, first.pixel, first.index);
 }
 
 static void pass_done(EyePass *pass, Stats *stats)
@@ -237,6 +302,8 @@ Status tiles_render(const Tracer *tracer, const RenderOptions *options, const Ey
     Status status = make_seats(&pass, tracer, eye, diag);
     if (status == OK)
         status = run_sweeps(&pass, diag);
+    if (status == OK)
+        find_fault(&pass);
     pass_done(&pass, stats);
     stats->count[STAT_PIXELS] += (uint64_t)film->width * (uint64_t)film->height;
     stats->seconds[PHASE_EYE] += clock_wall() - pass.started;

@@ -359,6 +359,9 @@ static bool prism_list(const Shape *shape, const Line *line, ShapeScratch *scrat
     int base = scratch->count;
     l.near = (line->near - l.base) * l.speed;
     l.far = (line->far - l.base) * l.speed;
+    /* Else spans could be both before and beyond what is wanted, and be counted wrong. */
+    if (num_max(l.in, l.near) > num_min(l.out, l.far))
+        return false;
     bool is_inside = push_walls(&l, scratch);
     int count = scratch->count - base;
     crossings_sort(scratch->items + base, count);

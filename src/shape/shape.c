@@ -185,6 +185,22 @@ void shape_crossings(const Shape *shape, const Ray *ray, ShapeScratch *scratch, 
     out->is_overflown = scratch->is_overflown;
 }
 
+void shape_crossings_ahead(const Shape *shape, const Ray *ray, ShapeScratch *scratch,
+                           CrossList *out)
+{
+    out->is_inside_before = list_part(shape, ray, ray->tmin, ray->tmax, false, scratch);
+    int kept = 0;
+    for (int i = 0; i < scratch->count; i++) {
+        const Crossing *c = &scratch->items[i];
+        if (c->is_visible && c->t > ray->tmin && c->t < ray->tmax &&
+            (kept == 0 || c->t > scratch->items[kept - 1].t))
+            scratch->items[kept++] = *c;
+    }
+    out->items = scratch->items;
+    out->count = kept;
+    out->is_overflown = scratch->is_overflown;
+}
+
 bool shape_is_solid(const Shape *shape)
 {
     static const bool is_solid[SHAPE_COUNT] = {

@@ -360,6 +360,13 @@ void shape_crossings(const Shape *shape, const Ray *ray, ShapeScratch *scratch, 
  * Returns false when there is none. */
 bool shape_closest(const Shape *shape, const Ray *ray, ShapeScratch *scratch, Crossing *out);
 
+/* List the visible crossings with tmin < t < tmax, of any shape; of several at the same t the
+ * first.  To ask for the next one behind a crossing instead would not do: how a shape rounds t may
+ * depend on which part of the ray is wanted, and the same wall be met twice.  The list is replaced.
+ */
+void shape_crossings_ahead(const Shape *shape, const Ray *ray, ShapeScratch *scratch,
+                           CrossList *out);
+
 /* Return whether there is a visible crossing with tmin < t < tmax: what shape_closest returns,
  * found for less. */
 bool shape_is_met(const Shape *shape, const Ray *ray, ShapeScratch *scratch);

@@ -1,10 +1,11 @@
 /* Shadow rays.
  *
  * One pass over the index looks for anything opaque and notes the objects that let light
- * through; in most scenes that is all.  Otherwise the surfaces of the noted objects are
- * visited in order of t (each object keeps its next crossing) and filter the light.  What the ray
- * is in between them absorbs; that it began inside something shows where it leaves that.
+ * through; in most scenes that is all.  Otherwise the crossings of the noted objects are listed
+ * and visited in order of t, and filter the light.  What the ray is in between them absorbs; that
+ * it began inside something shows where it leaves that.
  * SPDX-License-Identifier: Apache-2.0 */
+#include "base/mem.h"
 #include "trace/media_along.h"
 #include "trace/trace_int.h"
 
@@ -14,7 +15,7 @@ enum { FILTERS_FEW = 16 }; /* objects noted without asking for memory */
 typedef struct Filter {
     uint32_t object;
     bool is_started, is_inside; /* for objects whose normals do not tell */
-    Crossing next;
+    size_t next, end;           /* of its crossings: in the thread's list */
 } Filter;
 
 typedef struct ShadowQuery {
@@ -181,9 +182,8 @@ static bool is_blocking_target(const ShadowQuery *query, const Surface *surface)
 }
 
 /* Return what passes one crossing. */
-static Rgb crossing_filter(const ShadowQuery *query, const Filter *filter, const Ray *ray)
+static Rgb crossing_filter(const ShadowQuery *query, const Crossing *crossing, const Ray *ray)
 {
-    const Crossing *crossing = &filter->next;
     const Surface *surface = &query->tracer->scene->surfaces[crossing->leaf->surface];
     const Interior *interior = surface->interior;
     if (!plan_filters_shadow(query->tracer->plan, surface) || is_blocking_target(query, surface))
@@ -196,8 +196,8 @@ static Rgb crossing_filter(const ShadowQuery *query, const Filter *filter, const
     ShapePoint point;
     shape_point(crossing, ray, &point);
     TextureChoice choice;
-    texture_choose(surface, crossing->leaf, crossing->part, crossing->u, crossing->v,
-                   point.p, v3_dot(point.ng, ray->d) > 0, &choice);
+    texture_choose(surface, crossing->leaf, crossing->part, crossing->u, crossing->v, point.p,
+                   v3_dot(point.ng, ray->d) > 0, &choice);
     Rgb sum = RGB_BLACK;
     for (int i = 0; i < choice.count; i++)
         sum =
@@ -214,13 +214,14 @@ typedef struct Legs {
 } Legs;
 
 /* Which way does the line go through a surface: 1 in, -1 out, 0 neither? */
-static int crossing_way(const ShadowQuery *query, Filter *filter, const Ray *ray)
+static int crossing_way(const ShadowQuery *query, Filter *filter, const Crossing *crossing,
+                        const Ray *ray)
 {
     if (query->tracer->objects[filter->object].is_closed)
-        return filter->next.leaf_change;
+        return crossing->leaf_change;
     ShapePoint point;
     if (!filter->is_started) {
-        shape_point(&filter->next, ray, &point);
+        shape_point(crossing, ray, &point);
         filter->is_inside = v3_dot(point.ng, ray->d) > 0;
     }
     filter->is_started = true;
@@ -235,10 +236,10 @@ static Rgb absorbed(const Interiors *inside, double length)
 
 /* End a leg at the crossing of a filter; returns what its interior, and one that the ray turns out
  * to have begun in, let through. */
-static Rgb end_leg(const ShadowQuery *query, Filter *filter, const Ray *ray, Legs *legs)
+static Rgb end_leg(const ShadowQuery *query, Filter *filter, const Crossing *crossing,
+                   const Ray *ray, Legs *legs)
 {
     Rgb passed = RGB_WHITE;
-    const Crossing *crossing = &filter->next;
     const Interior *interior = query->tracer->scene->surfaces[crossing->leaf->surface].interior;
     double length = crossing->t - legs->since;
     legs->since = crossing->t;
@@ -246,7 +247,7 @@ static Rgb end_leg(const ShadowQuery *query, Filter *filter, const Ray *ray, Leg
         passed = absorbed(&legs->inside, length);
     else
         legs->open += length;
-    int way = crossing_way(query, filter, ray);
+    int way = crossing_way(query, filter, crossing, ray);
     if (way > 0) {
         interiors_enter(&legs->inside, interior, filter->object);
     } else if (way < 0 && !interiors_leave(&legs->inside, interior, filter->object)) {
@@ -256,14 +257,53 @@ static Rgb end_leg(const ShadowQuery *query, Filter *filter, const Ray *ray, Leg
     return passed;
 }
 
-/* Move a filter to its first crossing behind t; drop it when there is none. */
-static void advance(ShadowQuery *query, int i, const Ray *ray, double t)
+/* List the crossings of a filter behind those of the ones before; false when memory is out. */
+static bool list_crossings(ShadowQuery *query, Filter *filter, const Ray *ray, size_t *count)
 {
-    Ray rest = *ray;
-    rest.tmin = t;
-    const TracedObject *traced = &query->tracer->objects[query->filters[i].object];
-    if (!shape_closest(traced->shape, &rest, query->thread->shapes, &query->filters[i].next))
-        query->filters[i] = query->filters[--query->count];
+    TraceThread *thread = query->thread;
+    CrossList list;
+    const Shape *shape = query->tracer->objects[filter->object].shape;
+    shape_crossings_ahead(shape, ray, thread->shapes, &list);
+    filter->next = *count;
+    for (int i = 0; i < list.count; i++, ++*count) {
+        void *items = thread->crossed;
+        if (mem_grow(&items, *count, &thread->crossed_capacity, sizeof *list.items))
+            return false;
+        thread->crossed = items;
+        thread->crossed[*count] = list.items[i];
+    }
+    filter->end = *count;
+    return true;
+}
+
+/* Keep those filters that the ray meets, with their crossings; false when memory is out. */
+static bool list_filters(ShadowQuery *query, const Ray *ray)
+{
+    int kept = 0;
+    size_t count = 0;
+    for (int i = 0; i < query->count; i++) {
+        Filter *filter = &query->filters[i];
+        if (!list_crossings(query, filter, ray, &count))
+            return false;
+        if (filter->next < filter->end)
+            query->filters[kept++] = *filter;
+    }
+    query->count = kept;
+    return true;
+}
+
+/* Return which filter has the nearest crossing. */
+static int nearest_filter(const ShadowQuery *query)
+{
+    int nearest = 0;
+    const Crossing *crossed = query->thread->crossed;
+    for (int i = 1; i < query->count; i++) {
+        const Filter *a = &query->filters[i], *b = &query->filters[nearest];
+        double t = crossed[a->next].t, least = crossed[b->next].t;
+        if (t < least || (t == least && a->object < b->object))
+            nearest = i;
+    }
+    return nearest;
 }
 
 /* Return what the last leg lets through: the light may stand in something, and the ray have begun
@@ -282,20 +322,17 @@ static Rgb walk_filters(ShadowQuery *query, const Ray *ray, Legs *legs)
 {
     Rgb light = RGB_WHITE;
     bool absorbs = plan_has(query->tracer->plan, FEATURE_ABSORPTION);
-    for (int i = query->count - 1; i >= 0; i--)
-        advance(query, i, ray, ray->tmin);
+    if (!list_filters(query, ray))
+        return RGB_BLACK;
     while (query->count > 0 && !rgb_is_black(light)) {
-        int nearest = 0;
-        for (int i = 1; i < query->count; i++) {
-            const Filter *a = &query->filters[i], *b = &query->filters[nearest];
-            if (a->next.t < b->next.t || (a->next.t == b->next.t && a->object < b->object))
-                nearest = i;
-        }
+        int nearest = nearest_filter(query);
         Filter *filter = &query->filters[nearest];
-        light = rgb_mul(light, crossing_filter(query, filter, ray));
+        const Crossing *crossing = &query->thread->crossed[filter->next++];
+        light = rgb_mul(light, crossing_filter(query, crossing, ray));
         if (absorbs)
-            light = rgb_mul(light, end_leg(query, filter, ray, legs));
-        advance(query, nearest, ray, filter->next.t);
+            light = rgb_mul(light, end_leg(query, filter, crossing, ray, legs));
+        if (filter->next == filter->end)
+            *filter = query->filters[--query->count];
     }
     return light;
 }

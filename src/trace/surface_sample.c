@@ -248,8 +248,7 @@ static void sample_transmission(Sampling *s)
     } else {
         /* An interpolated normal may send the ray back above the true surface: then the true
          * normal decides. */
-        V3 n = s->cosine > 0 ? s->n : out->ng;
-        bool is_through = refract(d, n, ratio, &out->transmit_dir);
+        bool is_through = refract(d, s->n, ratio, &out->transmit_dir);
         if (is_through && !(v3_dot(out->transmit_dir, out->ng) < 0))
             is_through = refract(d, out->ng, ratio, &out->transmit_dir);
         if (!is_through)

@@ -29,6 +29,8 @@ typedef struct TraceThread {
     ShapeScratch *shapes;
     Arena *scratch;     /* reset by the pass after each sample or photon */
     uint32_t *blockers; /* per light: the object that blocked its last shadow ray, or none */
+    Crossing *crossed;   /* by the shadow ray at hand, of what lets light through */
+    size_t crossed_capacity;
     Rng media_rng;      /* of the sample or photon at hand: where media are looked at */
     bool is_dimmed;     /* all lights dim in media, as photons do: what shadow rays find will be
                            reflected or scattered again */

@@ -395,6 +395,9 @@ void trace_thread_done(TraceThread *thread)
     shape_scratch_free(thread->shapes);
     arena_free(thread->scratch);
     mem_free(thread->blockers);
+    mem_free(thread->crossed);
+    thread->crossed = NULL;
+    thread->crossed_capacity = 0;
     thread->shapes = NULL;
     thread->scratch = NULL;
     thread->blockers = NULL;

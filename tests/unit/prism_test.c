@@ -153,6 +153,36 @@ static void test_probes(void **state)
     assert_false(shape_is_inside(pyramid, v3(0, 1, 0))); /* probe: top 0, base 1 */
 }
 
+/* A turned prism leaves room in the box around it: lines that meet the box above or below the caps
+ * only must not be told of the walls there. */
+static void test_boxes_change_nothing(void **state)
+{
+    (void)state;
+    static TestPrism star_prism;
+    star_prism = (TestPrism){.form = {.lo = -0.1, .hi = 0.1}};
+    add_loop(&star_prism, SPLINE_LINEAR, star, 6);
+    Shape *plain = shape_prism(arena, &star_prism.form);
+    Xform turn = xform_rotate(v3(0.7, 0.4, 1.1));
+    shape_transform(plain, &turn);
+    Shape *boxed = shape_copy(arena, plain);
+    shape_finish(arena, boxed);
+    int met = 0;
+    for (uint32_t i = 0; i < 20000; i++) {
+        Rng rng = rng_at(77, 1, i);
+        V3 o = v3_scale(random_dir(&rng), 2), to = v3_scale(random_dir(&rng), 1.2);
+        Ray ray = {o, v3_unit(v3_sub(to, o)), 0, INFINITY};
+        CrossList list;
+        shape_crossings(plain, &ray, scratch, &list);
+        int count = list.count;
+        double first = count ? list.items[0].t : 0;
+        shape_crossings(boxed, &ray, scratch, &list);
+        assert_int_equal(list.count, count);
+        assert_true(count == 0 || list.items[0].t == first);
+        met += count > 0;
+    }
+    assert_true(met > 2000 && met < 18000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -160,6 +190,7 @@ int main(void)
         cmocka_unit_test(test_conic),
         cmocka_unit_test(test_knots),
         cmocka_unit_test(test_probes),
+        cmocka_unit_test(test_boxes_change_nothing),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -146,8 +146,8 @@ static void data_layers_describe_the_first_surface(void **state)
     (void)state;
     RenderOptions options = options_for(8, 6);
     options.layers = LAYER_Z | LAYER_N | LAYER_ALBEDO;
-    Rendered r = render(HEAD LOOK_DOWN "box { <-4,0,-4>, <0,1,4> pigment { rgb <0.1,0.2,0.3> } }",
-                        &options);
+    Rendered r =
+        render(HEAD LOOK_DOWN "box { <-4,0,-4>, <0,1,4> pigment { rgb <0.1,0.2,0.3> } }", &options);
     assert_int_equal(r.status, OK);
     assert_near(pixel(&r, "Z", 1, 1)[0], 9, 1e-6);
     assert_near(pixel(&r, "N", 1, 1)[1], 1, 1e-6);
@@ -425,6 +425,97 @@ static void samples_that_are_not_numbers_are_counted_and_dropped(void **state)
     done(&r);
 }
 
+static void keep_text(void *ctx, const char *text)
+{
+    char *kept = ctx;
+    strncat(kept, text, 4095 - strlen(kept));
+}
+
+/* The one warning names pixel, sample and place; only what shows the fault is black. */
+static void what_made_a_sample_no_number_is_told_once(void **state)
+{
+    (void)state;
+    static const char text[] =
+        HEAD LOOK_DOWN "plane { y, -1 pigment { rgb 1 } finish { ambient 1 diffuse 0 } }\n"
+                       "sphere { <0,1,0>, 0.5 pigment { rgb 1e30 } finish { ambient 1e30 } }";
+    char said[4096] = "", place[64];
+    Rendered r = {0};
+    RenderOptions options = options_for(9, 9);
+    SdlOptions sdl = {.width = 9, .height = 9, .threads = 1};
+    options.threads = 3;
+    diag_init(&r.diag, keep_text, said);
+    assert_int_equal(sdl_load_text(&r.diag, "test.pms", text, strlen(text), &sdl, &r.scene), OK);
+    assert_int_equal(render_scene(r.scene, &options, &r.diag, &r.result), OK);
+    int bad = 0, first = -1;
+    for (int i = 0; i < 81; i++) {
+        bool is_black = pixel(&r, "", i % 9, i / 9)[0] == 0;
+        bad += is_black;
+        first = is_black && first < 0 ? i : first;
+    }
+    assert_true(bad > 0 && bad < 81);
+    assert_int_equal(r.result.stats.count[STAT_NAN_SAMPLE], bad);
+    snprintf(place, sizeof place, "sample 0 of pixel %d,%d, the first of %d", first % 9, first / 9,
+             bad);
+    assert_non_null(strstr(said, "test.pms:2:1: warning"));
+    assert_non_null(strstr(said, place));
+    assert_null(strstr(strstr(said, "no number") + 1, "no number"));
+    done(&r);
+}
+
+typedef struct Story {
+    int steps, faults, samples, lost;
+    float red; /* of the last sample */
+} Story;
+
+static void story_step(void *ctx, const EyeStep *step)
+{
+    Story *story = ctx;
+    story->steps++;
+    story->faults += !eye_step_is_finite(step);
+}
+
+static void story_sample(void *ctx, double x, double y, uint32_t index, const EyeSample *sample)
+{
+    Story *story = ctx;
+    (void)x, (void)y, (void)index;
+    story->samples++;
+    story->lost += !sample;
+    if (sample)
+        story->red = sample->part[PART_DIRECT].r;
+}
+
+/* A pixel by itself is that of the whole picture, whatever the antialiasing. */
+static void a_pixel_is_replayed_with_its_samples(void **state)
+{
+    (void)state;
+    static const char text[] = HEAD LOOK_DOWN
+        "plane { y, 0 pigment { checker rgb 1, rgb x scale 0.3 } finish { ambient 1 diffuse 0\n"
+        "  reflection 0.5 } }\n"
+        "sphere { <0,1,0>, 0.5 pigment { rgb 1e30 } finish { ambient 1e30 } }";
+    for (int aa = AA_NONE; aa <= AA_UNIFORM; aa++) {
+        RenderOptions options = options_for(48, 40);
+        options.aa = (AaMethod)aa;
+        options.samples = 5;
+        Rendered whole = render(text, &options);
+        for (int x = 1; x < 48; x += 15) {
+            Story story = {0};
+            Replay replay = {x, 20, {story_step, &story}, story_sample};
+            options.replay = &replay;
+            Rendered one = render(text, &options);
+            assert_memory_equal(pixel(&one, "", x, 20), pixel(&whole, "", x, 20),
+                                4 * sizeof(float));
+            assert_true(story.samples >= (aa == AA_UNIFORM ? 5 : 1));
+            assert_true(story.steps >= story.samples);
+            assert_true((story.faults > 0) == (story.lost > 0));
+            if (aa == AA_NONE && !story.lost)
+                assert_true(story.red == pixel(&whole, "", x, 20)[0]);
+            done(&one);
+            options.replay = NULL;
+        }
+        done(&whole);
+    }
+}
+
 static void opaque_scenes_cost_no_photons_and_no_filters(void **state)
 {
     (void)state;
@@ -459,10 +550,10 @@ static void focal_blur_spreads_an_edge_over_the_lens(void **state)
      * line at offset d from its centre: 1/2 + (d sqrt(R2-d2) + R2 asin(d/R)) / (pi R2). */
     for (int i = -7; i < 7; i++) {
         double d = (i + 0.5) * 0.05, R = 0.25;
-        double want = d <= -R  ? 0
-                      : d >= R ? 1
-                               : 0.5 + (d * sqrt(R * R - d * d) + R * R * asin(d / R)) /
-                                           (PMS_PI * R * R);
+        double want =
+            d <= -R  ? 0
+            : d >= R ? 1
+                     : 0.5 + (d * sqrt(R * R - d * d) + R * R * asin(d / R)) / (PMS_PI * R * R);
         /* The pixel is a tenth of the disk wide; 400 stratified samples. */
         assert_near(pixel(&r, "", 400 + i, 0)[0], want, 0.02);
     }
@@ -491,6 +582,8 @@ int main(void)
         cmocka_unit_test(parallel_area_lights_shift_their_rays),
         cmocka_unit_test(assumed_gamma_makes_linear_values),
         cmocka_unit_test(samples_that_are_not_numbers_are_counted_and_dropped),
+        cmocka_unit_test(what_made_a_sample_no_number_is_told_once),
+        cmocka_unit_test(a_pixel_is_replayed_with_its_samples),
         cmocka_unit_test(opaque_scenes_cost_no_photons_and_no_filters),
         cmocka_unit_test(focal_blur_spreads_an_edge_over_the_lens),
     };
