@@ -50,6 +50,13 @@ static double radius_of(const JuliaForm *form)
     return form->is_hypercomplex ? 4 : num_min(2, 1 + c * (1 + 0x1p-40));
 }
 
+/* The radius of a ball around the set whose border is outside: what has not escaped at once is
+ * within the square root of limit2_of. */
+static double reach_of(const JuliaForm *form)
+{
+    return radius_of(form) * (1 + 0x1p-20);
+}
+
 Shape *shape_julia(Arena *arena, const JuliaForm *form)
 {
     Shape *shape = leaf_new(arena, SHAPE_JULIA);
@@ -354,7 +361,7 @@ typedef struct JuliaWalk {
 static bool walk_begin(JuliaWalk *walk, const Shape *shape, const LocalRay *ray)
 {
     const JuliaForm *form = shape->u.julia;
-    double a = v3_len2(ray->d), base = -v3_dot(ray->o, ray->d) / a, radius = radius_of(form);
+    double a = v3_len2(ray->d), base = -v3_dot(ray->o, ray->d) / a, radius = reach_of(form);
     double room = radius * radius - v3_len2(v3_mad(ray->o, base, ray->d));
     const double *n = form->slice;
     if (!(room > 0))
@@ -483,13 +490,13 @@ static void julia_point(const Shape *shape, const Crossing *crossing, V3 p, Loca
 
 static bool julia_is_inside(const Shape *shape, V3 p)
 {
-    double radius = radius_of(shape->u.julia);
+    double radius = reach_of(shape->u.julia);
     return v3_len2(p) <= radius * radius && fate_of(shape->u.julia, p).is_inside;
 }
 
 static Bound julia_bound(const Shape *shape)
 {
-    double r = radius_of(shape->u.julia);
+    double r = reach_of(shape->u.julia);
     Bound b = bound_pad((Bound){v3(-r, -r, -r), v3(r, r, r)});
     return shape->is_transformed ? bound_pad(bound_transform(b, &shape->xform)) : b;
 }

@@ -188,7 +188,8 @@ void shape_crossings(const Shape *shape, const Ray *ray, ShapeScratch *scratch, 
 void shape_crossings_ahead(const Shape *shape, const Ray *ray, ShapeScratch *scratch,
                            CrossList *out)
 {
-    out->is_inside_before = list_part(shape, ray, ray->tmin, ray->tmax, false, scratch);
+    Line line = begin_line(ray, ray->tmin, ray->tmax, scratch);
+    out->is_inside_before = csg_list(shape, &line, scratch);
     int kept = 0;
     for (int i = 0; i < scratch->count; i++) {
         const Crossing *c = &scratch->items[i];

@@ -133,12 +133,36 @@ static inline bool picture_make(const Shot *shot, Image *out)
 typedef struct Difference {
     int changed; /* pixels of which any bit differs */
     int visible; /* pixels of which a display value differs by more than 1/255 */
+    int blocks;  /* of pixels: their mean display value differs by more than BLOCK_LIMIT */
 } Difference;
+
+enum { BLOCK_SIDE = 10 };
+#define BLOCK_LIMIT 0.03
+
+/* Count blocks of display values whose means differ. */
+static inline int count_blocks(const Image *a, const Image *b)
+{
+    int count = 0, channels = a->layers[0].channel_count;
+    for (int y = 0; y < a->height; y += BLOCK_SIDE)
+        for (int x = 0; x < a->width; x += BLOCK_SIDE) {
+            double sum = 0;
+            for (int i = 0; i < BLOCK_SIDE * BLOCK_SIDE; i++) {
+                int row = y + i / BLOCK_SIDE, column = x + i % BLOCK_SIDE;
+                if (row >= a->height || column >= a->width)
+                    continue;
+                const float *p = a->layers[0].pixels + (row * a->width + column) * channels;
+                const float *q = b->layers[0].pixels + (row * a->width + column) * channels;
+                sum += (double)(p[0] + p[1] + p[2]) - (double)(q[0] + q[1] + q[2]);
+            }
+            count += !(fabs(sum) / (3 * BLOCK_SIDE * BLOCK_SIDE) <= BLOCK_LIMIT);
+        }
+    return count;
+}
 
 /* Both are display values afterwards. */
 static inline Difference picture_difference(Image *a, Image *b)
 {
-    Difference out = {0, 0};
+    Difference out = {0, 0, 0};
     ImageLayer *p = &a->layers[0], *q = &b->layers[0];
     int pixels = a->width * a->height, channels = p->channel_count;
     assert_true(a->width == b->width && a->height == b->height);
@@ -156,6 +180,7 @@ static inline Difference picture_difference(Image *a, Image *b)
         }
         out.visible += is_visible;
     }
+    out.blocks = count_blocks(a, b);
     return out;
 }
 

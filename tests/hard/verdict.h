@@ -14,8 +14,8 @@ typedef struct Pair {
 } Pair;
 
 typedef struct Verdict {
-    bool is_made;         /* there are pictures */
-    int changed, visible; /* pixels: see Difference */
+    bool is_made;                 /* there are pictures */
+    int changed, visible, blocks; /* see Difference */
 } Verdict;
 
 static inline Verdict verdict_of_pair(const Pair *pair, bool is_by_povray)
@@ -37,7 +37,8 @@ static inline Verdict verdict_of_pair(const Pair *pair, bool is_by_povray)
     Difference d = picture_difference(&a, &b);
     image_done(&a);
     image_done(&b);
-    return (Verdict){.is_made = true, .changed = d.changed, .visible = d.visible};
+    return (Verdict){
+        .is_made = true, .changed = d.changed, .visible = d.visible, .blocks = d.blocks};
 }
 
 /* The worse of two. */
