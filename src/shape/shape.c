@@ -188,7 +188,7 @@ void shape_crossings(const Shape *shape, const Ray *ray, ShapeScratch *scratch, 
 void shape_crossings_ahead(const Shape *shape, const Ray *ray, ShapeScratch *scratch,
                            CrossList *out)
 {
-    Line line = begin_line(ray, ray->tmin, ray->tmax, scratch);
+    Line line = scratch_line(ray, ray->tmin, ray->tmax, scratch);
     out->is_inside_before = csg_list(shape, &line, scratch);
     int kept = 0;
     for (int i = 0; i < scratch->count; i++) {
