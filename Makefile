@@ -175,8 +175,8 @@ $(B)/tests/%_test: $(B)/tests/%_test.o $(B)/libpms.a
 
 # The geometry a second time, in quad precision: one object, of which only its table of functions is
 # seen from outside (tests/hard/quad_world.h).
-QUADSRC  := $(wildcard src/math/*.c src/accel/*.c src/shape/*.c) tests/hard/quad_world.c \
-            tests/hard/quad_shapes.c
+QUADBOTH := $(addprefix tests/hard/,quad_world.c quad_shapes.c quad_solids.c quad_facets.c quad_csg.c)
+QUADSRC  := $(wildcard src/math/*.c src/accel/*.c src/shape/*.c) $(QUADBOTH)
 QUADOBJ  := $(QUADSRC:%.c=$(B)/quad/%.o)
 QUADFLAGS = -std=c17 -D_POSIX_C_SOURCE=200809L -Isrc -include tests/hard/quad_real.h -O2 -g -pthread \
             -ffp-contract=off -fno-math-errno -fno-trapping-math \
@@ -191,8 +191,8 @@ $(B)/quad_geometry.o: $(QUADOBJ)
 	@echo "  link    $@"
 	$(Q)$(LD) -r -o $@ $^ && objcopy --keep-global-symbol=quad_world $@
 
-$(B)/tests/hard/quad_test: $(B)/tests/hard/quad_world.o $(B)/tests/hard/quad_shapes.o \
-            $(B)/tests/hard/quad_rays.o $(B)/quad_geometry.o
+$(B)/tests/hard/quad_test: $(QUADBOTH:%.c=$(B)/%.o) $(B)/tests/hard/quad_rays.o \
+            $(B)/tests/hard/quad_lists.o $(B)/quad_geometry.o
 
 TARGET    = $(DESTDIR)$(PREFIX)
 INSTALLED = $(TARGET)/bin/pms $(patsubst stdlib/%,$(TARGET)/share/pms/%,$(wildcard stdlib/*)) \

@@ -42,6 +42,8 @@ typedef struct TriHit {
     double t_error; /* bound on the error of t */
     double t_slope; /* how far t may move when the ray is moved sideways by 1 */
     uint32_t triangle;
+    bool is_along; /* the ray goes the way of (b - a) x (c - a); with the same sign for all
+                      triangles that share edges, when they are seen from their edges, too */
 } TriHit;
 
 /* Build an index over triangles.

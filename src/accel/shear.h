@@ -99,6 +99,7 @@ static inline bool sheared_meets(const Shear *s, const Sheared p[3], double tmin
     double det = e0 + e1 + e2;
     if (det == 0) /* seen from its edge */
         return false;
+    out->is_along = left == (s->sz > 0);
     out->u = e1 / det;
     out->v = e2 / det;
     out->t = s->start + (e0 * p[0].z + e1 * p[1].z + e2 * p[2].z) / det;

@@ -231,7 +231,7 @@ ALWAYS_INLINE double find_of_degree(const double *b, int degree)
     }
     /* The last step, with all digits. */
     double slope, value = bernstein_at(b, degree, x, &slope), next = x - value / slope;
-    return next >= 0 && next <= 1 ? next : x;
+    return next >= 0 && next <= 1 ? next : next < 0 ? 0 : next > 1 ? 1 : x;
 }
 
 static double find_only(const double *b, int degree)

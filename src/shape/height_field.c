@@ -27,9 +27,9 @@ Shape *shape_height_field(Arena *arena, const HeightData *data)
         return NULL;
     shape->u.height_field = data;
     const double one = 1;
-    Xform unit =
-        xform_scale(v3(one / (data->columns - 1), one / HEIGHT_SCALE, one / (data->rows - 1)));
-    leaf_place(shape, &unit);
+    Xform size = xform_scale(
+        v3(one / (data->columns - 1), one / (HEIGHT_SCALE * data->unit), one / (data->rows - 1)));
+    leaf_place(shape, &size);
     return shape;
 }
 
@@ -40,9 +40,14 @@ static int blocks_along(int cells, int level)
     return (cells + (1 << level) - 1) >> level;
 }
 
-static uint16_t height_at(const HeightData *d, int x, int z)
+static uint16_t whole_height_at(const HeightData *d, int x, int z)
 {
     return d->heights[(size_t)z * (size_t)d->columns + (size_t)x];
+}
+
+static double height_at(const HeightData *d, int x, int z)
+{
+    return d->unit * whole_height_at(d, x, z);
 }
 
 static HeightRange range_add(HeightRange a, HeightRange b)
@@ -56,7 +61,7 @@ static HeightRange range_of(const HeightData *d, int x0, int x1, int z0, int z1)
     HeightRange range = {UINT16_MAX, 0};
     for (int z = z0; z <= z1 && z < d->rows; z++) {
         for (int x = x0; x <= x1 && x < d->columns; x++) {
-            uint16_t h = height_at(d, x, z);
+            uint16_t h = whole_height_at(d, x, z);
             range = range_add(range, (HeightRange){h, h});
         }
     }
@@ -91,8 +96,13 @@ static void fill_level(HeightData *d, int level)
     }
 }
 
+/* Heights get a unit that makes the field about as high as it is wide: else shearing loses digits.
+ * It is a power of two, so that nothing is rounded. */
 bool height_prepare(Arena *arena, HeightData *d)
 {
+    int cells = d->columns > d->rows ? d->columns - 1 : d->rows - 1;
+    for (d->unit = 1; d->unit * HEIGHT_SCALE > cells;)
+        d->unit *= 0.5;
     for (int level = LEVEL_FIRST;; level++) {
         int wide = blocks_along(d->columns - 1, level), deep = blocks_along(d->rows - 1, level);
         d->level[level] = ARENA_ARRAY(arena, HeightRange, (size_t)wide * (size_t)deep);
@@ -157,10 +167,11 @@ static Stretch cut(Stretch s, double o, double inverse, double a, double b)
 static void keep(HeightWalk *w, const TriHit *hit, const V3 corner[3])
 {
     double y = (1 - hit->u - hit->v) * corner[0].y + hit->u * corner[1].y + hit->v * corner[2].y;
-    bool is_dry = y >= w->data->water;
+    bool is_dry = y >= w->data->water * w->data->unit;
     if (!w->scratch && (!is_dry || (w->is_found && hit->t >= w->best.t)))
         return;
-    bool is_entering = v3_dot(normal_of(corner), w->d) < 0;
+    /* Even ones have their corners' normal down. */
+    bool is_entering = hit->is_along == (hit->triangle % 2 == 0);
     Crossing c = {.t = hit->t,
                   .t_error = hit->t_error + hit->t_slope * w->off,
                   .leaf = w->shape,
@@ -205,7 +216,8 @@ static inline bool is_between(const HeightWalk *w, Stretch s, HeightRange range)
 {
     double a = w->shear.o.y + s.from * w->d.y, b = w->shear.o.y + s.to * w->d.y;
     double low = a < b ? a : b, high = a < b ? b : a;
-    return high >= range.lo - BLOCK_PAD && low <= range.hi + BLOCK_PAD;
+    double unit = w->data->unit;
+    return high >= unit * (range.lo - BLOCK_PAD) && low <= unit * (range.hi + BLOCK_PAD);
 }
 
 static inline HeightRange cell_range(const HeightData *d, int x, int z)
@@ -295,7 +307,7 @@ static bool walk(HeightWalk *w, const Shape *shape, const LocalRay *local)
     Stretch s = {-INFINITY, INFINITY};
     s = cut(s, local->o.x, w->inverse.x, -1, d->columns);
     s = cut(s, local->o.z, w->inverse.z, -1, d->rows);
-    s = cut(s, local->o.y, w->inverse.y, all.lo - 1., all.hi + 1.);
+    s = cut(s, local->o.y, w->inverse.y, d->unit * (all.lo - 1), d->unit * (all.hi + 1));
     if (!(s.from <= s.to))
         return false;
     Ray ray = {local->o, local->d, 0, INFINITY};
@@ -346,9 +358,20 @@ static int compare_crossings(const void *a, const void *b)
  * leaves them, and where it goes through the water. */
 typedef enum HeightEvent { EVENT_ENTRY, EVENT_EXIT, EVENT_WATER, EVENT_COUNT } HeightEvent;
 
+typedef struct Unseen {
+    double t, error;
+} Unseen;
+
 typedef struct HeightState {
     bool is_within, is_under, is_wet; /* the walls, the surface, the water */
 } HeightState;
+
+/* An event where the line comes to a place on an axis. */
+static Unseen unseen_at(const LocalRay *local, int axis, double t)
+{
+    double off = v3_at(local_error(local, t), axis) + PLACE_EPS * fabs(v3_at(local->d, axis) * t);
+    return (Unseen){t, off / fabs(v3_at(local->d, axis)) + 4 * EPS_DOUBLE * fabs(t)};
+}
 
 static bool is_solid_at(HeightState s)
 {
@@ -367,8 +390,83 @@ static void push_change(const HeightWalk *w, HeightState *state, HeightState nex
     scratch_push(w->scratch, &c);
 }
 
+static bool may_be_swapped(const Crossing *a, const Crossing *b)
+{
+    return b->t - b->t_error <= a->t + a->t_error;
+}
+
+static bool is_under_at(const HeightWalk *w, const LocalRay *local, double t)
+{
+    V3 p = v3_mad(local->o, t, local->d);
+    return p.y < surface_height(w->data, p.x, p.z);
+}
+
+/* May a crossing of the surface be where the line goes through a wall? */
+static bool is_at_border(const Stretch *walls, const Crossing *c)
+{
+    double off = 2 * c->t_error;
+    return fabs(c->t - walls->from) <= off || fabs(c->t - walls->to) <= off;
+}
+
+/* Is a line that is not upright under the surface where it enters the walls?  What it crosses
+ * tells; if that is rounding, the point in the middle of the longest stretch without crossings
+ * does. */
+static bool starts_under(const HeightWalk *w, const LocalRay *local, const Stretch *walls,
+                         const Crossing *items, int count)
+{
+    int sum = 0;
+    for (int i = 0; i < count; i++)
+        sum += items[i].change;
+    if (sum && !(count == 1 && is_at_border(walls, items)))
+        return sum < 0;
+    if (count > 1 && (items[0].change == items[1].change || !may_be_swapped(&items[0], &items[1])))
+        return items[0].change < 0;
+    double first = count ? items[0].t : walls->to, last = count ? items[count - 1].t : first;
+    bool is_before = first - walls->from >= walls->to - last;
+    return is_under_at(w, local, .5 * (is_before ? walls->from + first : last + walls->to));
+}
+
+/* Bring a crossing that goes a way to the front, if there is one that the first cannot be told
+ * from; the one whose place is less certain moves. */
+static bool bring(Crossing *items, int count, int way)
+{
+    int k = 0;
+    while (k < count && items[k].change != way)
+        k++;
+    if (k == count || !may_be_swapped(&items[0], &items[k]))
+        return false;
+    Crossing found = items[k];
+    if (found.t_error > items[0].t_error)
+        found.t = items[0].t;
+    for (; k > 0; k--) {
+        items[k] = items[k - 1];
+        items[k].t = fmax(items[k].t, found.t);
+    }
+    items[0] = found;
+    return true;
+}
+
+/* Let the crossings of the surface go down and up in turn; returns how many are left.  At corners
+ * their order is rounding, and on the border of the field one may be missing: of two in one place
+ * what comes next tells which there is. */
+static int settle(Crossing *items, int count, bool is_under)
+{
+    int written = 0;
+    for (int i = 0; i < count; i++) {
+        if (!bring(items + i, count - i, is_under ? -1 : 1)) {
+            if (written < 2 || !may_be_swapped(&items[written - 2], &items[written - 1]))
+                continue;
+            written--;
+            is_under = !is_under;
+        }
+        items[written++] = items[i];
+        is_under = !is_under;
+    }
+    return written;
+}
+
 /* Merge the crossings of the surface, from `first` on, with the unseen ones. */
-static void merge_events(const HeightWalk *w, int first, const double t[EVENT_COUNT],
+static void merge_events(const HeightWalk *w, int first, const Unseen unseen[EVENT_COUNT],
                          HeightState *state)
 {
     ShapeScratch *scratch = w->scratch;
@@ -377,11 +475,12 @@ static void merge_events(const HeightWalk *w, int first, const double t[EVENT_CO
     for (;;) {
         int event = -1;
         for (int i = 0; i < EVENT_COUNT; i++)
-            if (!is_done[i] && isfinite(t[i]) && (event < 0 || t[i] < t[event]))
+            if (!is_done[i] && isfinite(unseen[i].t) &&
+                (event < 0 || unseen[i].t < unseen[event].t))
                 event = i;
         HeightState after = *state;
         /* The merged crossings go behind the surface's own, which are read meanwhile. */
-        if (next < surface && (event < 0 || scratch->items[first + next].t <= t[event])) {
+        if (next < surface && (event < 0 || scratch->items[first + next].t <= unseen[event].t)) {
             Crossing c = scratch->items[first + next++];
             after.is_under = !state->is_under;
             push_change(w, state, after, c);
@@ -392,26 +491,13 @@ static void merge_events(const HeightWalk *w, int first, const double t[EVENT_CO
         is_done[event] = true;
         after.is_within = event == EVENT_WATER ? state->is_within : event == EVENT_ENTRY;
         after.is_wet = event == EVENT_WATER ? !state->is_wet : state->is_wet;
-        push_change(w, state, after, (Crossing){.t = t[event], .t_error = w->off * 4});
+        push_change(w, state, after,
+                    (Crossing){.t = unseen[event].t, .t_error = unseen[event].error});
     }
     int merged = scratch->count - first - surface;
     for (int i = 0; i < merged; i++)
         scratch->items[first + i] = scratch->items[first + surface + i];
     scratch->count = first + merged;
-}
-
-/* Is the line under the surface where it enters the walls?  What it does first tells; if it does
- * nothing, any point between them does. */
-static bool starts_under(const HeightWalk *w, const LocalRay *local, int first,
-                         const double t[EVENT_COUNT])
-{
-    if (w->scratch->count > first)
-        return w->scratch->items[first].change < 0;
-    double middle = isfinite(t[EVENT_ENTRY]) ? .5 * (t[EVENT_ENTRY] + t[EVENT_EXIT]) : 0;
-    if (!isfinite(t[EVENT_ENTRY])) /* straight up or down, and no surface: beside the field */
-        return false;
-    V3 p = v3_mad(local->o, middle, local->d);
-    return p.y < surface_height(w->data, p.x, p.z);
 }
 
 static bool height_list(const Shape *shape, const Line *line, ShapeScratch *scratch)
@@ -426,24 +512,31 @@ static bool height_list(const Shape *shape, const Line *line, ShapeScratch *scra
     if (scratch->count > first + 1)
         qsort(scratch->items + first, (size_t)(scratch->count - first), sizeof(Crossing),
               compare_crossings);
-    Stretch walls = {-INFINITY, INFINITY};
+    Stretch x = {-INFINITY, INFINITY}, z = x;
     if (w.d.x != 0)
-        walls = cut(walls, local.o.x, 1 / w.d.x, 0, d->columns - 1);
+        x = cut(x, local.o.x, 1 / w.d.x, 0, d->columns - 1);
     if (w.d.z != 0)
-        walls = cut(walls, local.o.z, 1 / w.d.z, 0, d->rows - 1);
+        z = cut(z, local.o.z, 1 / w.d.z, 0, d->rows - 1);
+    Stretch walls = {fmax(x.from, z.from), fmin(x.to, z.to)};
     bool is_beside = (w.d.x == 0 && !(local.o.x >= 0 && local.o.x <= d->columns - 1)) ||
                      (w.d.z == 0 && !(local.o.z >= 0 && local.o.z <= d->rows - 1));
     if (is_beside || !(walls.from <= walls.to)) {
         scratch->count = first;
         return false;
     }
-    double water = w.d.y != 0 ? (d->water - local.o.y) / w.d.y : INFINITY;
-    const double t[EVENT_COUNT] = {walls.from, walls.to, water};
+    double water = w.d.y != 0 ? (d->water * d->unit - local.o.y) / w.d.y : INFINITY;
+    const Unseen unseen[EVENT_COUNT] = {
+        [EVENT_ENTRY] = unseen_at(&local, x.from > z.from ? 0 : 2, walls.from),
+        [EVENT_EXIT] = unseen_at(&local, x.to < z.to ? 0 : 2, walls.to),
+        [EVENT_WATER] = unseen_at(&local, 1, water)};
     HeightState state = {.is_within = !isfinite(walls.from),
-                         .is_wet = w.d.y > 0 || (w.d.y == 0 && local.o.y < d->water)};
-    state.is_under = state.is_within ? w.d.y > 0 : starts_under(&w, &local, first, t);
+                         .is_wet = w.d.y > 0 || (w.d.y == 0 && local.o.y < d->water * d->unit)};
+    Crossing *items = scratch->items + first;
+    int count = scratch->count - first;
+    state.is_under = state.is_within ? w.d.y > 0 : starts_under(&w, &local, &walls, items, count);
+    scratch->count = first + settle(items, count, state.is_under);
     bool is_inside = is_solid_at(state);
-    merge_events(&w, first, t, &state);
+    merge_events(&w, first, unseen, &state);
     return is_inside;
 }
 
@@ -452,30 +545,31 @@ static bool height_is_inside(const Shape *shape, V3 p)
     const HeightData *d = shape->u.height_field;
     if (!(p.x >= 0 && p.z >= 0 && p.x < d->columns - 1 && p.z < d->rows - 1))
         return false;
-    if (p.y < d->water)
+    if (p.y < d->water * d->unit)
         return true;
-    if (p.y >= block_at(d, d->top, 0, 0).hi)
+    if (p.y >= d->unit * block_at(d, d->top, 0, 0).hi)
         return false;
     return p.y < surface_height(d, p.x, p.z);
 }
 
 /* --- looks --------------------------------------------------------------------------------- */
 
-/* Return the mean of the normals of the triangles between a point and its neighbours. */
+/* Return the mean of the normals of the triangles between a point and its neighbours, taken where
+ * heights are whole numbers. */
 static V3 smooth_normal(const HeightData *d, int x, int z)
 {
     static const int side[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
     V3 sum = v3(0, 0, 0);
-    double h = height_at(d, x, z);
+    double h = whole_height_at(d, x, z);
     for (int i = 0; i < 4; i++) {
         int nx = x + side[i][0], nz = z + side[i][1];
         if (nx < 0 || nz < 0 || nx >= d->columns || nz >= d->rows)
             continue;
-        double across = (height_at(d, nx, z) - h) * side[i][0];
-        double along = (height_at(d, x, nz) - h) * side[i][1];
+        double across = (whole_height_at(d, nx, z) - h) * side[i][0];
+        double along = (whole_height_at(d, x, nz) - h) * side[i][1];
         sum = v3_add(sum, v3_unit(v3(-across, 1, -along)));
     }
-    return v3_unit(sum);
+    return v3_unit(v3(sum.x, sum.y / d->unit, sum.z));
 }
 
 /* Blend the normals of a cell's corners as they are in the scene. */
@@ -520,7 +614,7 @@ static Bound local_bound(const HeightData *d)
     double low = fmax(all.lo, d->water);
     if (low > all.hi)
         return BOUND_EMPTY;
-    return (Bound){v3(0, low, 0), v3(d->columns - 1, all.hi, d->rows - 1)};
+    return (Bound){v3(0, d->unit * low, 0), v3(d->columns - 1, d->unit * all.hi, d->rows - 1)};
 }
 
 static Bound height_bound(const Shape *shape)
@@ -532,7 +626,7 @@ static Bound height_bound(const Shape *shape)
 static double height_size(const Shape *shape)
 {
     const HeightData *d = shape->u.height_field;
-    return fmax(fmax(d->columns, d->rows), block_at(d, d->top, 0, 0).hi);
+    return fmax(fmax(d->columns, d->rows), d->unit * block_at(d, d->top, 0, 0).hi);
 }
 
 const ShapeOps height_field_ops = {.list = height_list,

@@ -21,11 +21,12 @@ struct HeightData {
     int columns, rows;       /* of points, >= 2 */
     double water;            /* what is lower is cut away, in heights */
     bool is_smooth;
+    double unit;                           /* of heights in the shape's space: see height_prepare */
     int top;                               /* the level whose one block is all */
     HeightRange *level[HEIGHT_LEVELS_MAX]; /* from 2 on: blocks of 2^level cells a side */
 };
 
-/* Derive what follows from the fields before `top`.  False when memory is out. */
+/* Derive what follows from the fields before `unit`.  False when memory is out. */
 bool height_prepare(Arena *arena, HeightData *data);
 
 #endif

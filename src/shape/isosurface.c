@@ -309,6 +309,8 @@ static void surface_point(const IsosurfaceParams *iso, V3 p, LocalPoint *out)
     double left = value_of(iso, moved, &turned);
     bool is_nearer = fabs(left) < fabs(value);
     out->p = is_nearer ? moved : p;
+    if (is_nearer && v3_len2(turned) > 0 && v3_is_finite(turned))
+        out->ng = v3_unit(turned);
     double doubt = 2 * rounding_at(iso, out->p) + fabs(is_nearer ? left : value);
     out->error = (is_steep ? doubt / length : 0) + 2 * PLACE_EPS * v3_sum_abs(p);
 }

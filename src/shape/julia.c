@@ -392,10 +392,22 @@ static double halve(const JuliaWalk *walk, double lo, double hi, bool is_inside)
     return hi;
 }
 
+static V3 normal_of(const JuliaForm *form, V3 p, double tilt, bool is_last)
+{
+    V3 n = form->is_hypercomplex ? pair_normal(form, p, tilt, is_last)
+                                 : quaternion_normal(form, p, tilt, is_last);
+    return v3_is_finite(n) ? v3_unit(n) : v3(0, 0, 0);
+}
+
 static void fill_crossing(const JuliaWalk *walk, double t, int8_t change, Crossing *out)
 {
-    double off = v3_sum_abs(local_error(walk->ray, t)) + 8 * PLACE_EPS;
-    LeafHit hit = {t, off / walk->speed + 4 * EPS_DOUBLE * fabs(t), 0, change, true};
+    const JuliaForm *form = walk->shape->u.julia;
+    V3 p = v3_mad(walk->ray->o, t, walk->ray->d), n = normal_of(form, p, 1, false);
+    double off = v3_sum_abs(local_error(walk->ray, t)) + 8 * PLACE_EPS * radius_of(form);
+    double slant = fabs(v3_dot(n, walk->ray->d)) / walk->speed;
+    /* A line that touches is off by no more than where a ball of that size is touched. */
+    double error = num_min(off / slant, sqrt(radius_of(form) * off)) / walk->speed;
+    LeafHit hit = {t, error + 4 * EPS_DOUBLE * fabs(t), 0, change, true};
     crossing_fill(walk->shape, &hit, out);
 }
 
@@ -466,13 +478,6 @@ static bool julia_closest(const Shape *shape, const Ray *ray, ShapeScratch *scra
 }
 
 /* --- the other operations ------------------------------------------------------------------- */
-
-static V3 normal_of(const JuliaForm *form, V3 p, double tilt, bool is_last)
-{
-    V3 n = form->is_hypercomplex ? pair_normal(form, p, tilt, is_last)
-                                 : quaternion_normal(form, p, tilt, is_last);
-    return v3_is_finite(n) ? v3_unit(n) : v3(0, 0, 0);
-}
 
 /* What is shown is the gradient after one iteration more than the surface is of, and as if the
  * fourth coordinate did not change: so POV-Ray shades it. */

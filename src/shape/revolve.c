@@ -129,6 +129,7 @@ static bool line_begin(RevolveLine *l, const RevolveData *data, const LocalRay *
     double speed2 = v3_len2(ray->d), middle = 0.5 * (data->y_lo + data->y_hi);
     l->base = v3_dot(v3_sub(v3(0, middle, 0), ray->o), ray->d) / speed2;
     l->speed = sqrt(speed2);
+    l->tmin = line->near;
     l->f = v3_mad(ray->o, l->base, ray->d);
     l->e = v3_scale(ray->d, 1 / l->speed);
     l->lo = -INFINITY;
@@ -226,6 +227,12 @@ static bool push_piece(const RevolveData *data, uint32_t number, const RevolveLi
     return is_within[low] != (l->e.y != 0 && is_within_end(data, piece, l, low));
 }
 
+/* Is what happens at s seen, once t is rounded? */
+static bool is_after_start(const RevolveLine *l, double s)
+{
+    return l->base + s / l->speed > l->tmin;
+}
+
 /* Push the crossings of all pieces; returns whether an odd number lies before what is wanted. */
 static bool push_pieces(const RevolveData *data, RevolveLine *l, bool is_first_only,
                         ShapeScratch *scratch)
@@ -242,7 +249,8 @@ static bool push_pieces(const RevolveData *data, RevolveLine *l, bool is_first_o
             int from = scratch->count;
             is_odd ^= push_piece(data, data->tree.items[node->first + i], l, scratch);
             for (int k = from; is_first_only && k < scratch->count; k++)
-                l->far = num_max(l->near, num_min(l->far, scratch->items[k].t));
+                if (is_after_start(l, scratch->items[k].t))
+                    l->far = num_max(l->near, num_min(l->far, scratch->items[k].t));
         }
         if (!node->count) {
             /* First the one that the line comes to first, as far as heights tell. */

@@ -37,6 +37,7 @@ typedef struct RevolveData {
 typedef struct RevolveLine {
     V3 f, e; /* e unit */
     double base, speed; /* t = base + s / speed */
+    double tmin;        /* t where crossings are wanted from */
     double lo, hi;      /* s: beyond, and at these, the line is further out than any piece */
     double near, far;   /* the part of lo to hi where crossings are wanted */
     double axis;        /* s nearest to the axis */

@@ -23,19 +23,42 @@ void leaf_hits(const Shape *shape, const Ray *ray, LeafHits *out)
     shape_ops(shape)->hits(shape, &local, out);
 }
 
+/* Where a line nearly touches a part, how far the surface may be off, over the slope, is no bound
+ * worth having: without end it would make one event of all that is on the line.  But a short chord
+ * is that of a parabola, which when it is moved by as much changes its ends by less. */
+static void bound_touching(Crossing *items, int count)
+{
+    for (int i = 0; i + 1 < count; i++) {
+        Crossing *a = &items[i], *b = a + 1;
+        double half = 0.5 * (b->t - a->t);
+        if (a->part != b->part || a->change + b->change != 0 || !(half > 0))
+            continue;
+        if (a->t_error > 4 * half)
+            a->t_error = half + sqrt(half * (half + 2 * a->t_error));
+        if (b->t_error > 4 * half)
+            b->t_error = half + sqrt(half * (half + 2 * b->t_error));
+    }
+}
+
 bool leaf_list(const Shape *shape, const Line *line, ShapeScratch *scratch)
 {
     const ShapeOps *ops = shape_ops(shape);
-    if (ops->list)
-        return ops->list(shape, line, scratch);
-    Crossing crossing;
-    LeafHits hits;
-    leaf_hits(shape, line->ray, &hits);
-    for (int i = 0; i < hits.count; i++) {
-        crossing_fill(shape, &hits.at[i], &crossing);
-        scratch_push(scratch, &crossing);
+    int base = scratch->count;
+    bool is_inside = false;
+    if (ops->list) {
+        is_inside = ops->list(shape, line, scratch);
+    } else {
+        Crossing crossing;
+        LeafHits hits;
+        leaf_hits(shape, line->ray, &hits);
+        is_inside = hits.is_inside_before;
+        for (int i = 0; i < hits.count; i++) {
+            crossing_fill(shape, &hits.at[i], &crossing);
+            scratch_push(scratch, &crossing);
+        }
     }
-    return hits.is_inside_before;
+    bound_touching(scratch->items + base, scratch->count - base);
+    return is_inside;
 }
 
 bool hits_closest(const Shape *leaf, const LeafHits *hits, const Ray *ray, Crossing *out)

@@ -220,11 +220,15 @@ static int convex_hits(const SuperLine *l, bool *is_inside_before, LeafHit *out,
     if (entry == APPROACH_MISS)
         return 0;
     int count = entry == APPROACH_HIT;
-    if (count >= most || approach(l, l->hi, -1, &out[count]) != APPROACH_HIT)
+    if (count >= most)
         return count;
-    if (count == 1 && !(out[0].t < out[1].t))
+    Approach exit = approach(l, l->hi, -1, &out[count]);
+    if (exit == APPROACH_INSIDE)
+        return count;
+    /* What is met from one side alone is touched. */
+    if (count == 1 && (exit == APPROACH_MISS || !(out[0].t < out[1].t)))
         return 0;
-    return count + 1;
+    return count + (exit == APPROACH_HIT);
 }
 
 /* --- the others ---------------------------------------------------------------------------- */

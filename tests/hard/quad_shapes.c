@@ -9,6 +9,21 @@ Plain kit_number(ShapeKit *kit, Plain lo, Plain hi)
     return lo + part;
 }
 
+Plain kit_short(ShapeKit *kit, Plain lo, Plain hi)
+{
+    Plain steps = 0x1p20, number = kit_number(kit, lo, hi) * steps;
+    return (Plain)(int32_t)number / steps;
+}
+
+V3 kit_short_point(ShapeKit *kit, Plain size)
+{
+    V3 p;
+    p.x = kit_short(kit, -size, size);
+    p.y = kit_short(kit, -size, size);
+    p.z = kit_short(kit, -size, size);
+    return p;
+}
+
 V3 kit_point(ShapeKit *kit, Plain size)
 {
     V3 p;
@@ -136,21 +151,32 @@ static Shape *make_quadric(ShapeKit *kit)
     return shape_quadric(kit->arena, square, mixed, linear, constant);
 }
 
-const ShapeCase shape_cases[SHAPE_CASES] = {
-    {"sphere", make_sphere},
-    {"box", make_box},
-    {"cone", make_cone},
-    {"open cone", make_open_cone},
-    {"cylinder", make_cylinder},
-    {"plane", make_plane},
-    {"torus", make_torus},
-    {"thin torus", make_thin_torus},
-    {"spindle torus", make_spindle_torus},
-    {"disc", make_disc},
-    {"triangle", make_triangle},
-    {"smooth triangle", make_smooth_triangle},
-    {"quadric", make_quadric},
+const ShapeCase plain_cases[] = {
+    {.name = "sphere", .make = make_sphere},
+    {.name = "box", .make = make_box},
+    {.name = "cone", .make = make_cone},
+    {.name = "open cone", .make = make_open_cone},
+    {.name = "cylinder", .make = make_cylinder},
+    {.name = "plane", .make = make_plane},
+    {.name = "torus", .make = make_torus},
+    {.name = "thin torus", .make = make_thin_torus},
+    {.name = "spindle torus", .make = make_spindle_torus},
+    {.name = "disc", .make = make_disc},
+    {.name = "triangle", .make = make_triangle},
+    {.name = "smooth triangle", .make = make_smooth_triangle},
+    {.name = "quadric", .make = make_quadric},
+    {.name = NULL},
 };
+
+const ShapeCase *shape_case(int i)
+{
+    static const ShapeCase *const lists[] = {plain_cases, solid_cases, facet_cases, csg_cases};
+    for (size_t k = 0; k < sizeof lists / sizeof *lists; k++)
+        for (const ShapeCase *c = lists[k]; c->name; c++)
+            if (i-- == 0)
+                return c;
+    return NULL;
+}
 
 /* --- placing -------------------------------------------------------------------------------- */
 

@@ -8,7 +8,7 @@
 #include "base/rng.h"
 #include "shape/mesh.h"
 
-enum { SHAPE_CASES = 13, MODEL_LEAVES_MAX = 64, MODEL_MARKS_MAX = 64 };
+enum { MODEL_LEAVES_MAX = 64, MODEL_MARKS_MAX = 64 };
 
 /* What a case makes its shape with. */
 typedef struct ShapeKit {
@@ -24,9 +24,14 @@ typedef struct ShapeKit {
 typedef struct ShapeCase {
     const char *name;
     Shape *(*make)(ShapeKit *kit);
+    bool may_skip; /* by what the language says, what is thin may be left out */
 } ShapeCase;
 
-extern const ShapeCase shape_cases[SHAPE_CASES];
+/* The cases of each file; a row without a name ends them. */
+extern const ShapeCase plain_cases[], solid_cases[], facet_cases[], csg_cases[];
+
+/* Return case number i, or NULL. */
+const ShapeCase *shape_case(int i);
 
 /* Make the shape of a case, of a size about 1, and place it by one of some kinds of transforms. */
 Shape *shape_kit_make(ShapeKit *kit, const ShapeCase *which);
@@ -37,6 +42,10 @@ void shape_kit_done(ShapeKit *kit);
 /* Return a random number of [lo, hi]. */
 Plain kit_number(ShapeKit *kit, Plain lo, Plain hi);
 V3 kit_point(ShapeKit *kit, Plain size); /* each coordinate of [-size, size] */
+
+/* The same with few digits, so that sums of some of them are exact. */
+Plain kit_short(ShapeKit *kit, Plain lo, Plain hi);
+V3 kit_short_point(ShapeKit *kit, Plain size);
 
 void kit_mark(ShapeKit *kit, V3 p);
 

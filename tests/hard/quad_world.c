@@ -30,7 +30,13 @@ static Plain3 plain(V3 a)
 
 static const char *world_name(int which)
 {
-    return shape_cases[which].name;
+    const ShapeCase *of = shape_case(which);
+    return of ? of->name : NULL;
+}
+
+static bool world_may_skip(int which)
+{
+    return shape_case(which)->may_skip;
 }
 
 static void world_free(Model *model)
@@ -64,7 +70,7 @@ static Model *world_make(int which, uint64_t seed)
     model->scratch = shape_scratch_new();
     Shape *shape = NULL;
     if (model->kit.arena && model->scratch)
-        shape = shape_kit_make(&model->kit, &shape_cases[which]);
+        shape = shape_kit_make(&model->kit, shape_case(which));
     if (!shape) {
         world_free(model);
         return NULL;
@@ -163,8 +169,8 @@ static bool world_is_inside(const Model *model, Quad3 p)
 #endif
 
 const World WORLD = {
-    .case_count = SHAPE_CASES,
     .name = world_name,
+    .may_skip = world_may_skip,
     .make = world_make,
     .free = world_free,
     .bound = world_bound,

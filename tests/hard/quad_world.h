@@ -35,8 +35,8 @@ typedef struct Meeting {
 } Meeting;
 
 typedef struct World {
-    int case_count;
-    const char *(*name)(int which);
+    const char *(*name)(int which); /* of a case, or NULL */
+    bool (*may_skip)(int which);    /* what is thin may be left out */
 
     /* Make the model of a case from random numbers: the same ones for the same seed.  NULL when
      * memory is out. */
