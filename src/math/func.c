@@ -27,7 +27,12 @@ static double whole(double x)
     return t >= INT32_MIN && t <= INT32_MAX ? t : INT32_MIN;
 }
 
-static double compute(FuncOp op, const double x[FUNC_FROM_MAX])
+static bool is_noise(FuncOp op)
+{
+    return op >= FUNC_NOISE1 && op <= FUNC_NOISE3;
+}
+
+static double compute(FuncOp op, const double x[FUNC_FROM_MAX], const Noise *noise)
 {
     double a = x[0], b = x[1];
     switch (op) {
@@ -63,6 +68,10 @@ static double compute(FuncOp op, const double x[FUNC_FROM_MAX])
         return a != 0 || b != 0;
     case FUNC_SELECT:
         return a < 0 ? b : a == 0 ? x[2] : x[3];
+    case FUNC_NOISE1:
+    case FUNC_NOISE2:
+    case FUNC_NOISE3:
+        return noise_value(noise, (int)op - FUNC_NOISE1 + 1, v3(a, b, x[2]));
     case FUNC_NEG:
         return -a;
     case FUNC_ABS:
@@ -121,7 +130,7 @@ static void take(const FuncStep *step, const double *slots, double x[FUNC_FROM_M
 }
 
 /* The steps that most functions are made of, without ado. */
-static inline double compute_fast(const FuncStep *step, const double *slots)
+static inline double compute_fast(const FuncStep *step, const double *slots, const Noise *noise)
 {
     double a = slots[step->from[0]], b = slots[step->from[1]], x[FUNC_FROM_MAX];
     switch (step->op) {
@@ -133,7 +142,7 @@ static inline double compute_fast(const FuncStep *step, const double *slots)
         return a * b;
     default:
         take(step, slots, x);
-        return compute((FuncOp)step->op, x);
+        return compute((FuncOp)step->op, x, noise);
     }
 }
 
@@ -143,7 +152,7 @@ double func_value(const Func *func, const double *arguments)
     load(func, arguments, slots);
     double *out = slots + func->param_count + func->const_count;
     for (int i = 0; i < func->step_count; i++)
-        out[i] = compute_fast(&func->steps[i], slots);
+        out[i] = compute_fast(&func->steps[i], slots, func->noise);
     return slots[func->result];
 }
 
@@ -240,6 +249,13 @@ static V3 step_gradient(FuncOp op, const double x[FUNC_FROM_MAX], double value,
     }
 }
 
+static V3 noise_slope(const Noise *noise, FuncOp op, const double *x, const V3 *g)
+{
+    V3 slope;
+    noise_gradient(noise, (int)op - FUNC_NOISE1 + 1, v3(x[0], x[1], x[2]), &slope);
+    return weigh(g, (double[]){slope.x, slope.y, slope.z}, 3);
+}
+
 /* Compute all slots, and their derivatives by the first three parameters. */
 static void differentiate(const Func *func, const double *arguments, double *slots, V3 *slopes)
 {
@@ -255,8 +271,10 @@ static void differentiate(const Func *func, const double *arguments, double *slo
         take(step, slots, x);
         for (int k = 0; k < FUNC_FROM_MAX; k++)
             g[k] = slopes[step->from[k]];
-        double value = slots[first + i] = compute((FuncOp)step->op, x);
-        slopes[first + i] = step_gradient((FuncOp)step->op, x, value, g);
+        double value = slots[first + i] = compute((FuncOp)step->op, x, func->noise);
+        slopes[first + i] = is_noise((FuncOp)step->op)
+                                ? noise_slope(func->noise, (FuncOp)step->op, x, g)
+                                : step_gradient((FuncOp)step->op, x, value, g);
     }
 }
 
@@ -287,6 +305,7 @@ void func_begin(FuncBuilder *builder, int param_count)
 {
     builder->param_count = param_count;
     builder->const_count = builder->step_count = 0;
+    builder->noise = NULL;
 }
 
 static bool is_full(const FuncBuilder *b)
@@ -328,12 +347,20 @@ static int find_step(const FuncBuilder *b, const FuncStep *step)
     return at;
 }
 
+static bool is_one(const FuncBuilder *b, int slot)
+{
+    double value;
+    return func_is_const(b, slot, &value) && value == 1;
+}
+
 int func_step(FuncBuilder *b, FuncOp op, const int *from)
 {
     FuncStep step = {.op = (uint16_t)op, .from = {0}};
     double x[FUNC_FROM_MAX] = {0};
     bool is_const = true;
     int count = from_count(op);
+    if (op == FUNC_SELECT && func_is_const(b, from[0], &x[0]))
+        return from[x[0] < 0 ? 1 : x[0] == 0 ? 2 : 3];
     for (int i = 0; i < count; i++) {
         if (from[i] == NO_SLOT)
             return NO_SLOT;
@@ -343,7 +370,12 @@ int func_step(FuncBuilder *b, FuncOp op, const int *from)
     for (int i = count; i < FUNC_FROM_MAX; i++)
         step.from[i] = (uint16_t)from[0]; /* any slot will do */
     if (is_const)
-        return func_const(b, compute(op, x));
+        return func_const(b, compute(op, x, b->noise));
+    bool is_times = op == FUNC_MUL, is_power = op == FUNC_POW;
+    if ((is_times || is_power) && is_one(b, from[1]))
+        return from[0];
+    if (is_times && is_one(b, from[0]))
+        return from[1];
     int at = find_step(b, &step);
     if (at == b->step_count) {
         if (is_full(b))
@@ -353,28 +385,83 @@ int func_step(FuncBuilder *b, FuncOp op, const int *from)
     return FIRST_STEP + at;
 }
 
-/* Return the node of slot `slot` of a function that is being called. */
-static int called_node(const Func *callee, int slot, const int *arguments, const int *consts,
-                       const int *steps)
+/* A function being called: what its slots are here. */
+typedef struct Call {
+    const Func *callee;
+    int nodes[FUNC_SLOTS_MAX];
+    bool is_needed[FUNC_SLOTS_MAX];
+    bool is_known[FUNC_SLOTS_MAX]; /* with these arguments it is a constant */
+    double value[FUNC_SLOTS_MAX];
+} Call;
+
+/* Find the constants among the steps. */
+static void find_known(const FuncBuilder *b, Call *call, const int *arguments)
 {
+    const Func *callee = call->callee;
     int first = callee->param_count + callee->const_count;
-    return slot < callee->param_count ? arguments[slot]
-           : slot < first             ? consts[slot - callee->param_count]
-                                      : steps[slot - first];
+    for (int i = 0; i < first; i++) {
+        bool is_param = i < callee->param_count;
+        call->is_known[i] = !is_param || func_is_const(b, arguments[i], &call->value[i]);
+        if (!is_param)
+            call->value[i] = callee->consts[i - callee->param_count];
+    }
+    for (int i = 0; i < callee->step_count; i++) {
+        const FuncStep *step = &callee->steps[i];
+        double x[FUNC_FROM_MAX];
+        take(step, call->value, x);
+        bool is_known = true;
+        for (int k = 0; k < FUNC_FROM_MAX; k++)
+            is_known &= call->is_known[step->from[k]];
+        call->is_known[first + i] = is_known;
+        call->value[first + i] = is_known ? compute((FuncOp)step->op, x, callee->noise) : 0;
+    }
+}
+
+/* Mark what the result is made of: of a choice that is known, what is chosen. */
+static void find_needed(Call *call)
+{
+    const Func *callee = call->callee;
+    int first = callee->param_count + callee->const_count;
+    for (int i = 0; i < first + callee->step_count; i++)
+        call->is_needed[i] = i == callee->result;
+    for (int i = callee->step_count - 1; i >= 0; i--) {
+        const FuncStep *step = &callee->steps[i];
+        if (!call->is_needed[first + i])
+            continue;
+        bool is_chosen = step->op == FUNC_SELECT && call->is_known[step->from[0]];
+        double by = call->value[step->from[0]];
+        int only = by < 0 ? 1 : by == 0 ? 2 : 3;
+        for (int k = 0; k < FUNC_FROM_MAX; k++)
+            if (!is_chosen || k == only || k == 0)
+                call->is_needed[step->from[k]] = true;
+    }
 }
 
 int func_call(FuncBuilder *b, const Func *callee, const int *arguments)
 {
-    int consts[FUNC_SLOTS_MAX], steps[FUNC_SLOTS_MAX];
-    for (int i = 0; i < callee->const_count; i++)
-        consts[i] = func_const(b, callee->consts[i]);
-    for (int i = 0; i < callee->step_count; i++) {
+    Call call;
+    int first = callee->param_count + callee->const_count;
+    call.callee = callee;
+    if (callee->noise)
+        b->noise = callee->noise;
+    find_known(b, &call, arguments);
+    find_needed(&call);
+    for (int i = 0; i < first + callee->step_count; i++) {
         int from[FUNC_FROM_MAX];
-        for (int k = 0; k < FUNC_FROM_MAX; k++)
-            from[k] = called_node(callee, callee->steps[i].from[k], arguments, consts, steps);
-        steps[i] = func_step(b, (FuncOp)callee->steps[i].op, from);
+        if (!call.is_needed[i])
+            call.nodes[i] = NO_SLOT;
+        else if (i < callee->param_count)
+            call.nodes[i] = arguments[i];
+        else if (i < first)
+            call.nodes[i] = func_const(b, callee->consts[i - callee->param_count]);
+        else {
+            const FuncStep *step = &callee->steps[i - first];
+            for (int k = 0; k < FUNC_FROM_MAX; k++)
+                from[k] = call.nodes[step->from[k]];
+            call.nodes[i] = func_step(b, (FuncOp)step->op, from);
+        }
     }
-    return called_node(callee, callee->result, arguments, consts, steps);
+    return call.nodes[callee->result];
 }
 
 static uint16_t slot_of(const FuncBuilder *b, int node)
@@ -398,8 +485,8 @@ const Func *func_end(Arena *arena, const FuncBuilder *b, int result)
         for (int k = 0; k < FUNC_FROM_MAX; k++)
             steps[i].from[k] = slot_of(b, b->steps[i].from[k]);
     }
-    *func =
-        (Func){b->param_count, b->const_count, b->step_count, consts, steps, slot_of(b, result)};
+    *func = (Func){b->param_count, b->const_count,     b->step_count, consts,
+                   steps,          slot_of(b, result), b->noise};
     return func;
 }
 

@@ -12,6 +12,8 @@
 #define PMS_MATH_FUNC_H
 
 #include "base/arena.h"
+#include "math/noise.h"
+#include "math/range.h"
 #include "math/v3.h"
 
 #include <stdint.h>
@@ -34,15 +36,9 @@ typedef struct Func {
     int param_count, const_count, step_count;
     const double *consts;
     const FuncStep *steps;
-    int result; /* slot */
+    int result;         /* slot */
+    const Noise *noise; /* NULL where no step needs it */
 } Func;
-
-/* All numbers from lo to hi. */
-typedef struct Range {
-    double lo, hi;
-} Range;
-
-#define RANGE_ALL ((Range){-INFINITY, INFINITY})
 
 /* Ranges of all slots of a function: of its values, and of its derivatives. */
 typedef struct FuncRanges {
@@ -59,6 +55,7 @@ typedef struct FuncBuilder {
     int param_count, const_count, step_count;
     double consts[FUNC_SLOTS_MAX];
     FuncStep steps[FUNC_SLOTS_MAX]; /* from: numbers of nodes, see func.c */
+    const Noise *noise;             /* to be set before the first step of noise */
 } FuncBuilder;
 
 void func_begin(FuncBuilder *builder, int param_count);

@@ -556,9 +556,16 @@ static bool is_sure(FuncOp op)
     return op == FUNC_SELECT || op == FUNC_INT || (op >= FUNC_LESS && op <= FUNC_OR);
 }
 
-/* All but the choice have two numbers at most; of those that have one, both are that. */
-static Range sure_value(const FuncStep *step, const Range x[FUNC_FROM_MAX])
+static bool is_noise(FuncOp op)
 {
+    return op >= FUNC_NOISE1 && op <= FUNC_NOISE3;
+}
+
+/* All but the choice and noise have two numbers at most; of those that have one, both are that. */
+static Range sure_value(const FuncStep *step, const Range x[FUNC_FROM_MAX], const Noise *noise)
+{
+    if (is_noise((FuncOp)step->op))
+        return noise_range(noise, step->op - FUNC_NOISE1 + 1, x, NULL);
     if (!is_sure((FuncOp)step->op) && (may_be_none(x[0]) || may_be_none(x[1])))
         return RANGE_ALL;
     return mended(step_value(step, x));
@@ -568,7 +575,7 @@ static void take(const FuncStep *step, const Range *slots, Range x[FUNC_FROM_MAX
 {
     x[0] = slots[step->from[0]];
     x[1] = slots[step->from[1]];
-    if (step->op != FUNC_SELECT)
+    if (step->op < FUNC_SELECT || step->op > FUNC_NOISE3)
         return;
     x[2] = slots[step->from[2]];
     x[3] = slots[step->from[3]];
@@ -583,9 +590,16 @@ Range func_range(const Func *func, const Range *arguments, FuncRanges *work)
         consts[i] = mended(range(func->consts[i], func->consts[i]));
     for (int i = 0; i < func->step_count; i++) {
         take(&func->steps[i], slots, x);
-        out[i] = sure_value(&func->steps[i], x);
+        out[i] = sure_value(&func->steps[i], x, func->noise);
     }
     return slots[func->result];
+}
+
+static Range noise_slope(const FuncStep *step, const Range *x, const Range *s, const Noise *noise)
+{
+    Range slopes[3];
+    noise_range(noise, step->op - FUNC_NOISE1 + 1, x, slopes);
+    return sum(sum(times(slopes[0], s[0]), times(slopes[1], s[1])), times(slopes[2], s[2]));
 }
 
 Range func_slope(const Func *func, const Range *slopes, FuncRanges *work)
@@ -600,8 +614,10 @@ Range func_slope(const Func *func, const Range *slopes, FuncRanges *work)
         take(&func->steps[i], work->value, x);
         take(&func->steps[i], slots, s);
         /* Around a pole there is no slope, nor where there may be no value. */
-        slots[first + i] =
-            may_be_none(value) ? RANGE_ALL : mended(step_slope(&func->steps[i], x, s, value));
+        slots[first + i] = may_be_none(value) ? RANGE_ALL
+                           : is_noise((FuncOp)func->steps[i].op)
+                               ? mended(noise_slope(&func->steps[i], x, s, func->noise))
+                               : mended(step_slope(&func->steps[i], x, s, value));
     }
     return slots[func->result];
 }

@@ -1,118 +1,60 @@
-/* The library of functions that the language numbers: those with a plain formula.
+/* The library of functions that the language numbers.
  *
- * Solids are where the value is below 0.  SPDX-License-Identifier: Apache-2.0 */
+ * Each is made from its formula as if the scene had it, so that bounds and derivatives come with
+ * it.  Formulas were found from the names and from values of POV-Ray.
+ * SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/parser_int.h"
-
-/* The code of one, being made. */
-typedef struct Formula {
-    FuncBuilder code;
-} Formula;
-
-static int param(Formula *f, int number)
-{
-    return func_param(&f->code, number);
-}
-
-static int op(Formula *f, FuncOp op, int a, int b)
-{
-    return func_step(&f->code, op, (int[]){a, b, a, a});
-}
-
-static int square(Formula *f, int a)
-{
-    return op(f, FUNC_MUL, a, a);
-}
-
-static int sum(Formula *f, int a, int b)
-{
-    return op(f, FUNC_ADD, a, b);
-}
-
-static int less(Formula *f, int a, int b)
-{
-    return op(f, FUNC_SUB, a, b);
-}
-
-static int root(Formula *f, int a)
-{
-    return op(f, FUNC_SQRT, a, a);
-}
-
-/* Distance from the origin in the plane, and in space. */
-static int length2(Formula *f, int a, int b)
-{
-    return root(f, sum(f, square(f, a), square(f, b)));
-}
-
-static int length3(Formula *f, int a, int b, int c)
-{
-    return root(f, sum(f, sum(f, square(f, a), square(f, b)), square(f, c)));
-}
-
-/* f_r(x, y, z) */
-static int radius(Formula *f)
-{
-    return length3(f, param(f, 0), param(f, 1), param(f, 2));
-}
-
-/* f_th(x, y, z): the angle around y */
-static int theta(Formula *f)
-{
-    return op(f, FUNC_ATAN2, param(f, 0), param(f, 2));
-}
-
-/* f_ph(x, y, z): the angle from y */
-static int phi(Formula *f)
-{
-    return op(f, FUNC_ATAN2, length2(f, param(f, 0), param(f, 2)), param(f, 1));
-}
-
-/* f_sphere(x, y, z, radius) */
-static int sphere(Formula *f)
-{
-    return less(f, radius(f), param(f, 3));
-}
-
-/* f_torus(x, y, z, major, minor) */
-static int torus(Formula *f)
-{
-    int ring = less(f, length2(f, param(f, 0), param(f, 2)), param(f, 3));
-    return less(f, length2(f, ring, param(f, 1)), param(f, 4));
-}
-
-/* f_ellipsoid(x, y, z, a, b, c): their inverses are the half axes; 0 at the centre */
-static int ellipsoid(Formula *f)
-{
-    int side[3];
-    for (int i = 0; i < 3; i++)
-        side[i] = op(f, FUNC_MUL, param(f, i), param(f, 3 + i));
-    return length3(f, side[0], side[1], side[2]);
-}
-
-/* f_paraboloid(x, y, z, strength) */
-static int paraboloid(Formula *f)
-{
-    int flat = sum(f, square(f, param(f, 0)), square(f, param(f, 2)));
-    return op(f, FUNC_MUL, less(f, flat, param(f, 1)), op(f, FUNC_NEG, param(f, 3), param(f, 3)));
-}
 
 static const struct {
     int number, params;
-    int (*make)(Formula *);
+    const char *formula;
 } formulas[] = {
-    {17, 6, ellipsoid}, {45, 4, paraboloid}, {47, 3, phi},   {57, 3, radius},
-    {61, 4, sphere},    {69, 3, theta},      {70, 5, torus},
+#define X(number, name, params, formula) {number, params, formula},
+#include "sdl/internal.def"
+#undef X
 };
+
+/* f_noise3d(x, y, z): by the generator of the scene. */
+static int scene_noise(const Parser *p, FuncBuilder *code)
+{
+    int from[] = {0, 1, 2, 0};
+    return func_step(code, (FuncOp)(FUNC_NOISE1 + parse_noise_generator(p) - 1), from);
+}
+
+static int by_formula(FuncBuilder *code, const char *text)
+{
+    return formula_code(code, text, code->param_count);
+}
+
+/* Return how many parameters a function has, 0: pms has it not; and its formula, if it has one. */
+static int find_formula(int number, const char **text)
+{
+    for (size_t i = 0; i < sizeof formulas / sizeof *formulas; i++) {
+        if (formulas[i].number == number) {
+            *text = formulas[i].formula;
+            return formulas[i].params;
+        }
+    }
+    return 0;
+}
+
+/* Those without a formula. */
+enum { HETERO_MF = 29, RIDGE = 58, RIDGED_MF = 59, NOISE3D = 76, FRACTAL_PARAMS = 9 };
 
 const Func *function_internal(Parser *p, int number)
 {
-    for (size_t i = 0; i < sizeof formulas / sizeof *formulas; i++) {
-        if (formulas[i].number != number)
-            continue;
-        Formula f;
-        func_begin(&f.code, formulas[i].params);
-        int result = formulas[i].make(&f);
-        return parse_no_null(p, func_end(parse_arena(p), &f.code, result));
-    }
-    return NULL;
+    FuncBuilder code;
+    const char *text = NULL;
+    bool is_fractal = number == HETERO_MF || number == RIDGE || number == RIDGED_MF;
+    int params = is_fractal ? FRACTAL_PARAMS : number == NOISE3D ? 3 : find_formula(number, &text);
+    if (params == 0)
+        return NULL;
+    func_begin(&code, params);
+    code.noise = parse_noise(p);
+    int result = text                  ? by_formula(&code, text)
+                 : number == NOISE3D   ? scene_noise(p, &code)
+                 : number == RIDGE     ? fractal_ridge(&code)
+                 : number == HETERO_MF ? fractal_hetero(&code)
+                                       : fractal_ridged(&code);
+    return parse_no_null(p, func_end(parse_arena(p), &code, result));
 }

@@ -199,3 +199,20 @@ const SdlOptions *parse_options(Parser *p)
 {
     return p->options;
 }
+
+const Noise *parse_noise(Parser *p)
+{
+    if (!p->noise)
+        p->noise = parse_no_null(p, noise_new(parse_arena(p)));
+    return p->noise;
+}
+
+int parse_noise_generator(const Parser *p)
+{
+    return p->noise_generator;
+}
+
+void parse_set_noise_generator(Parser *p, int generator)
+{
+    p->noise_generator = generator;
+}

@@ -149,6 +149,8 @@ struct Parser {
 
     AskedShape asked[ASKED_SHAPES]; /* of objects asked about last; node NULL: none */
     unsigned asked_count;
+    const Noise *noise;  /* made when needed */
+    int noise_generator; /* of the scene, as far as read */
     ShapeScratch *shape_scratch;    /* made when needed; freed by sdl_load */
 
     double version;
@@ -272,6 +274,19 @@ void parse_short_after(Parser *p, Terms *first);
 double parse_condition(Parser *p); /* a full expression in parentheses, one float */
 double terms_float(Parser *p, const Terms *terms, Span begin, TokenKind after);
 V3 terms_v3(Parser *p, const Terms *terms, Span begin);
+
+/* --- formula.c ------------------------------------------------------------------------------- */
+
+/* Add the steps of a formula, see formula.c, to code of so many parameters, of which there are
+ * three at least; returns its slot. */
+int formula_code(FuncBuilder *code, const char *text, int param_count);
+
+/* --- function_fractal.c --------------------------------------------------------------------- */
+
+/* Add the steps of f_ridged_mf, f_hetero_mf and f_ridge; return their slots. */
+int fractal_ridged(FuncBuilder *code);
+int fractal_hetero(FuncBuilder *code);
+int fractal_ridge(FuncBuilder *code);
 
 /* --- function.c, function_internal.c ---------------------------------------------------------- */
 

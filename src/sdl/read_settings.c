@@ -229,7 +229,7 @@ static bool read_unused_setting(Parser *p)
         return true;
     case KW_NOISE_GENERATOR:
         parse_next(p);
-        parse_int(p, "noise_generator", 1, 3);
+        parse_set_noise_generator(p, (int)parse_int(p, "noise_generator", 1, NOISE_GENERATORS));
         return true;
     case KW_MM_PER_UNIT:
         parse_next(p);

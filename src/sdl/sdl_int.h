@@ -8,6 +8,7 @@
 #define PMS_SDL_SDL_INT_H
 
 #include "base/strmap.h"
+#include "math/noise.h"
 #include "scene/node.h"
 #include "sdl/lex.h"
 #include "sdl/sdl.h"
@@ -128,6 +129,11 @@ Scene *parse_scene(Parser *p); /* the scene being filled */
 SceneBuild *parse_build(Parser *p); /* top-level nodes and lights so far (scene/node.h) */
 Diag *parse_diag(Parser *p);
 const SdlOptions *parse_options(Parser *p);
+/* Return the tables of noise, made when first asked for, in the scene arena. */
+const Noise *parse_noise(Parser *p);
+/* Return or set the noise generator of the scene, as far as it has been read. */
+int parse_noise_generator(const Parser *p);
+void parse_set_noise_generator(Parser *p, int generator);
 /* Fail the parse when a constructor of another floor returned NULL. */
 void *parse_no_null(Parser *p, const void *node);
 

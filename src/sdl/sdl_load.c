@@ -157,6 +157,7 @@ static Parser *parser_new(Diag *diag, const SdlOptions *options, Scene *scene, A
     p->scene = scene;
     p->build.arena = scene->arena;
     p->version = 3.7;
+    p->noise_generator = NOISE_GENERATOR_DEFAULT;
     p->tokens_max = options->max_tokens > 0 ? options->max_tokens : SDL_MAX_TOKENS;
     p->tokens_left = p->tokens_max;
     p->bytes_max = options->max_bytes ? options->max_bytes : machine_bytes();
