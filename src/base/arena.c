@@ -10,10 +10,10 @@ enum { ARENA_ALIGN = 16, ARENA_FIRST_BLOCK = 1 << 12, ARENA_LARGEST_STEP = 1 << 
 
 typedef struct Block Block;
 struct Block {
-    Block *next;   /* the block filled before this one */
-    size_t size;   /* bytes in data */
-    size_t used;   /* bytes handed out, a multiple of ARENA_ALIGN */
-    size_t unused_; /* keeps data aligned */
+    Block *next;  /* the block filled before this one */
+    size_t size;  /* bytes in data */
+    size_t used;  /* bytes handed out, a multiple of ARENA_ALIGN */
+    size_t dirty; /* bytes that have been handed out before; behind them all is 0 */
     unsigned char data[];
 };
 
@@ -79,7 +79,10 @@ void *arena_alloc(Arena *arena, size_t size)
         arena->top = block;
     }
     void *item = block->data + block->used;
-    memset(item, 0, rounded);
+    /* What comes from the heap is 0, and untouched memory costs nothing. */
+    if (block->used < block->dirty)
+        memset(item, 0,
+               rounded < block->dirty - block->used ? rounded : block->dirty - block->used);
     block->used += rounded;
     arena->bytes += rounded;
     return item;
@@ -120,6 +123,8 @@ void arena_reset(Arena *arena)
     /* The newest block is the largest: keep it alone. */
     free_blocks(arena->top->next);
     arena->top->next = NULL;
+    if (arena->top->dirty < arena->top->used)
+        arena->top->dirty = arena->top->used;
     arena->top->used = 0;
 #endif
 }

@@ -36,6 +36,7 @@ typedef struct Lexer {
     size_t open_count, open_capacity;
     int list_size;  /* in a list of mesh2: numbers of its vectors; else 0 */
     int list_depth; /* parentheses open in it */
+    int mesh_depth; /* braces open in a mesh, its own included; 0: not in one */
     bool is_out_of_memory;
     Token spare; /* handed out when memory is; nobody reads it */
 } Lexer;
@@ -271,9 +272,34 @@ static void link_directive(Lexer *lx, TokenKind word, size_t hash)
     }
 }
 
+/* Take the triangles of plain vectors that come next in a mesh as one token.  False if there are
+ * none. */
+static bool lex_triangles(Lexer *lx)
+{
+    const char *text = lx->text + lx->at, *end = lx->text + lx->size, *at = text, *last = text;
+    TokenKind before = lx->tokens[lx->count - 1].kind;
+    uint32_t count = 0;
+    if (before != TOKEN_LBRACE && before != TOKEN_RBRACE && before != TOKEN_TRIANGLES)
+        return false;
+    PlainTriangle triangle;
+    for (; (at = scan_triangle(at, end, &triangle)); at = scan_blanks(at, end)) {
+        last = at;
+        count++;
+    }
+    if (count == 0)
+        return false;
+    Token *token = add(lx, TOKEN_TRIANGLES, lx->at, lx->at + (size_t)(last - text));
+    token->text = text;
+    token->length = count;
+    return true;
+}
+
 static void lex_word(Lexer *lx)
 {
     size_t begin = lx->at, end = begin;
+    char first = byte_at(lx, 0);
+    if (lx->mesh_depth == 1 && (first == 't' || first == 's') && lex_triangles(lx))
+        return;
     while (end < lx->size && (is_letter(lx->text[end]) || is_digit(lx->text[end])))
         end++;
     if (end - begin > IDENTIFIER_MAX) {
@@ -310,10 +336,15 @@ static TokenKind punctuation(char c, char next, size_t *length)
     return mark ? kinds[mark - marks] : TOKEN_ILLEGAL;
 }
 
+static TokenKind last_kind(const Lexer *lx)
+{
+    return lx->count ? lx->tokens[lx->count - 1].kind : TOKEN_END;
+}
+
 /* Return how many numbers the vectors of a list have, if one begins with the brace here. */
 static int list_size(const Lexer *lx)
 {
-    switch ((int)(lx->count ? lx->tokens[lx->count - 1].kind : TOKEN_END)) {
+    switch ((int)last_kind(lx)) {
     case KW_UV_VECTORS:
         return 2;
     case KW_VERTEX_VECTORS:
@@ -327,9 +358,13 @@ static int list_size(const Lexer *lx)
     }
 }
 
-/* Keep track of the list of mesh2 that the mark ahead begins, ends or nests in. */
-static void track_list(Lexer *lx, TokenKind mark)
+/* Keep track of the mesh and the list of mesh2 that the mark ahead begins, ends or nests in. */
+static void track_mesh(Lexer *lx, TokenKind mark)
 {
+    if (mark == TOKEN_LBRACE && (lx->mesh_depth > 0 || last_kind(lx) == KW_MESH))
+        lx->mesh_depth++;
+    if (mark == TOKEN_RBRACE && lx->mesh_depth > 0)
+        lx->mesh_depth--;
     if (mark == TOKEN_LBRACE || mark == TOKEN_RBRACE) {
         lx->list_size = mark == TOKEN_LBRACE ? list_size(lx) : 0;
         lx->list_depth = 0;
@@ -371,7 +406,7 @@ static void lex_mark(Lexer *lx)
     if (kind == TOKEN_LESS && lx->list_size && lex_vectors(lx))
         return;
     if (kind != TOKEN_ILLEGAL) {
-        track_list(lx, kind);
+        track_mesh(lx, kind);
         add(lx, kind, lx->at, lx->at + length);
     } else if (is_beyond_ascii(byte_at(lx, 0))) {
         while (end < lx->size && is_beyond_ascii(lx->text[end]))

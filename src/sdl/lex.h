@@ -46,7 +46,7 @@ typedef struct Names {
 
 typedef struct Token {
     TokenKind kind;
-    uint32_t length; /* of text, bytes; of TOKEN_VECTORS, how many there are */
+    uint32_t length; /* of text, bytes; of TOKEN_VECTORS and TOKEN_TRIANGLES, how many there are */
     Span span;
     union {
         double number;    /* of TOKEN_NUMBER */
@@ -54,7 +54,8 @@ typedef struct Token {
                              strings the raw bytes between the quotes, escapes not decoded, not
                              terminated; of TOKEN_ILLEGAL what is wrong, terminated; of
                              TOKEN_VECTORS its beginning in the source: plain vectors with blanks
-                             and commas between them, see vector_scan.h */
+                             and commas between them, see vector_scan.h; of TOKEN_TRIANGLES that
+                             of triangles of a mesh, likewise */
         size_t jump;      /* of the `#` of a conditional or loop: index of the `#` of its next
                              branch or its #end; 0: there is none */
     };

@@ -9,9 +9,16 @@
 
 enum { MESH_ITEMS_MAX = 500 * 1000 * 1000 }; /* of one list; far above what memory holds */
 
+/* Finds vectors that are the same to the last bit, so that they need be kept once. */
+typedef struct Weld {
+    uint32_t *numbers; /* of the vectors, by their hash; UINT32_MAX: nothing there */
+    size_t capacity;   /* a power of two */
+} Weld;
+
 /* A mesh being read. */
 typedef struct MeshDraft {
     MeshData *mesh;
+    Weld vertex_weld, normal_weld; /* of a mesh without lists */
     size_t vertex_capacity, corner_capacity, normal_capacity, normal_corner_capacity;
     size_t uv_capacity, uv_corner_capacity, texture_corner_capacity, texture_capacity;
     uint32_t normal_count, uv_count;
@@ -29,18 +36,23 @@ static uint32_t add_vertex(Parser *p, MeshDraft *d, V3 vertex)
     return m->vertex_count++;
 }
 
-static uint32_t add_normal(Parser *p, MeshDraft *d, V3 normal, Span span)
+/* Return a normal as it is kept. */
+static V3 unit_normal(Parser *p, MeshDraft *d, V3 normal, Span span)
+{
+    normal = v3_unit(normal);
+    if (v3_len2(normal) > 0)
+        return normal;
+    if (!d->has_warned_normal)
+        parse_warn(p, WARN_GEOMETRY, span, "a normal of the mesh is 0: <1,0,0> is used");
+    d->has_warned_normal = true;
+    return v3(1, 0, 0);
+}
+
+static uint32_t add_normal(Parser *p, MeshDraft *d, V3 unit)
 {
     MeshData *m = d->mesh;
-    normal = v3_unit(normal);
-    if (!(v3_len2(normal) > 0)) {
-        normal = v3(1, 0, 0);
-        if (!d->has_warned_normal)
-            parse_warn(p, WARN_GEOMETRY, span, "a normal of the mesh is 0: <1,0,0> is used");
-        d->has_warned_normal = true;
-    }
     m->normals = read_grow(p, m->normals, d->normal_count, &d->normal_capacity, sizeof *m->normals);
-    m->normals[d->normal_count] = normal;
+    m->normals[d->normal_count] = unit;
     return d->normal_count++;
 }
 
@@ -64,15 +76,41 @@ static uint32_t add_texture(Parser *p, MeshDraft *d, const Texture *texture)
     return d->texture_count++;
 }
 
+/* Make room for `wanted` items in all. */
+static void *reserve(Parser *p, void *items, size_t count, size_t wanted, size_t *capacity,
+                     size_t item_size)
+{
+    if (wanted <= *capacity)
+        return items;
+    *capacity = wanted > 2 * *capacity ? wanted : 2 * *capacity;
+    void *grown = parse_alloc(p, *capacity * item_size);
+    if (count)
+        memcpy(grown, items, count * item_size);
+    return grown;
+}
+
 /* Append three indices to one of the mesh's corner arrays. */
 static uint32_t *add_corners(Parser *p, uint32_t *corners, uint32_t triangle, size_t *capacity,
                              const uint32_t three[3])
 {
     size_t count = (size_t)triangle * 3;
-    while (count + 3 > *capacity)
-        corners = read_grow(p, corners, *capacity, capacity, sizeof *corners);
+    corners = reserve(p, corners, count, count + 3, capacity, sizeof *corners);
     memcpy(corners + count, three, 3 * sizeof *three);
     return corners;
+}
+
+/* The same for an array that only some triangles need: it begins with the first that does. */
+static uint32_t *add_some_corners(Parser *p, uint32_t *corners, uint32_t triangle, size_t *capacity,
+                                  const uint32_t three[3])
+{
+    if (!corners && three[0] == UINT32_MAX)
+        return NULL;
+    size_t count = (size_t)triangle * 3;
+    if (!corners) {
+        corners = reserve(p, corners, 0, count + 3, capacity, sizeof *corners);
+        memset(corners, 0xff, count * sizeof *corners);
+    }
+    return add_corners(p, corners, triangle, capacity, three);
 }
 
 /* What one triangle of a mesh is made of. */
@@ -87,13 +125,71 @@ static void add_triangle(Parser *p, MeshDraft *d, const MeshTriangle *t)
     MeshData *m = d->mesh;
     uint32_t n = m->triangle_count;
     m->corners = add_corners(p, m->corners, n, &d->corner_capacity, t->corner);
-    m->normal_corners = add_corners(p, m->normal_corners, n, &d->normal_corner_capacity, t->normal);
-    m->uv_corners = add_corners(p, m->uv_corners, n, &d->uv_corner_capacity, t->uv);
-    m->textures = add_corners(p, m->textures, n, &d->texture_corner_capacity, t->texture);
+    m->normal_corners =
+        add_some_corners(p, m->normal_corners, n, &d->normal_corner_capacity, t->normal);
+    m->uv_corners = add_some_corners(p, m->uv_corners, n, &d->uv_corner_capacity, t->uv);
+    m->textures = add_some_corners(p, m->textures, n, &d->texture_corner_capacity, t->texture);
     d->has_smooth |= t->normal[0] != UINT32_MAX;
     d->has_uv |= t->uv[0] != UINT32_MAX;
     d->has_texture |= t->texture[0] != MESH_NO_TEXTURE;
     m->triangle_count++;
+}
+
+/* --- welding ------------------------------------------------------------------------------- */
+
+static size_t weld_place(const Weld *weld, V3 v)
+{
+    uint64_t bits[3];
+    memcpy(bits, &v, sizeof bits);
+    uint64_t hash = bits[0];
+    for (int i = 1; i < 3; i++)
+        hash = (hash ^ (hash >> 29)) * 0x9e3779b97f4a7c15u + bits[i];
+    hash = (hash ^ (hash >> 32)) * 0xbf58476d1ce4e5b9u;
+    return (size_t)(hash >> 20) & (weld->capacity - 1);
+}
+
+/* Return where the number of a vector is, or would be. */
+static uint32_t *weld_find(const Weld *weld, const V3 *vectors, V3 v)
+{
+    size_t place = weld_place(weld, v);
+    while (weld->numbers[place] != UINT32_MAX &&
+           memcmp(&vectors[weld->numbers[place]], &v, sizeof v) != 0)
+        place = (place + 1) & (weld->capacity - 1);
+    return &weld->numbers[place];
+}
+
+/* Make room for `wanted` vectors, of which there are `count`. */
+static void weld_reserve(Parser *p, Weld *weld, const V3 *vectors, uint32_t count, size_t wanted)
+{
+    if (wanted + wanted / 4 <= weld->capacity)
+        return;
+    weld->capacity = weld->capacity ? weld->capacity : 64;
+    while (weld->capacity < wanted + wanted / 2)
+        weld->capacity *= 2;
+    weld->numbers = parse_alloc(p, weld->capacity * sizeof *weld->numbers);
+    memset(weld->numbers, 0xff, weld->capacity * sizeof *weld->numbers);
+    for (uint32_t i = 0; i < count; i++)
+        *weld_find(weld, vectors, vectors[i]) = i;
+}
+
+static uint32_t weld_vertex(Parser *p, MeshDraft *d, V3 v)
+{
+    weld_reserve(p, &d->vertex_weld, d->mesh->vertices, d->mesh->vertex_count,
+                 (size_t)d->mesh->vertex_count + 1);
+    uint32_t *number = weld_find(&d->vertex_weld, d->mesh->vertices, v);
+    if (*number == UINT32_MAX)
+        *number = add_vertex(p, d, v);
+    return *number;
+}
+
+static uint32_t weld_normal(Parser *p, MeshDraft *d, V3 v)
+{
+    weld_reserve(p, &d->normal_weld, d->mesh->normals, d->normal_count,
+                 (size_t)d->normal_count + 1);
+    uint32_t *number = weld_find(&d->normal_weld, d->mesh->normals, v);
+    if (*number == UINT32_MAX)
+        *number = add_normal(p, d, v);
+    return *number;
 }
 
 /* --- mesh ---------------------------------------------------------------------------------- */
@@ -125,6 +221,21 @@ static void read_triangle_uvs(Parser *p, MeshDraft *d, MeshTriangle *t)
     }
 }
 
+/* Add a triangle whose other looks are in *t; normal: NULL for a flat one. */
+static void keep_triangle(Parser *p, MeshDraft *d, const V3 corner[3], const V3 *normal,
+                          MeshTriangle *t, Span span)
+{
+    if (read_triangle_is_flat(corner)) {
+        parse_warn(p, WARN_GEOMETRY, span, "degenerate triangle: it has no area");
+        return;
+    }
+    for (int i = 0; i < 3; i++) {
+        t->corner[i] = weld_vertex(p, d, corner[i]);
+        t->normal[i] = normal ? weld_normal(p, d, unit_normal(p, d, normal[i], span)) : UINT32_MAX;
+    }
+    add_triangle(p, d, t);
+}
+
 /* triangle or smooth_triangle, from its word to its closing brace. */
 static void read_mesh_triangle(Parser *p, MeshDraft *d, bool is_smooth)
 {
@@ -139,7 +250,6 @@ static void read_mesh_triangle(Parser *p, MeshDraft *d, bool is_smooth)
         }
     }
     MeshTriangle t;
-    memcpy(t.normal, no_corners, sizeof t.normal);
     memcpy(t.uv, no_corners, sizeof t.uv);
     memcpy(t.texture, no_corners, sizeof t.texture);
     while (!read_close(p)) {
@@ -151,16 +261,54 @@ static void read_mesh_triangle(Parser *p, MeshDraft *d, bool is_smooth)
         else
             parse_fail_here(p, "in a triangle of a mesh");
     }
-    if (read_triangle_is_flat(corner)) {
-        parse_warn(p, WARN_GEOMETRY, word.span, "degenerate triangle: it has no area");
-        return;
+    keep_triangle(p, d, corner, is_smooth ? normal : NULL, &t, word.span);
+}
+
+/* Make room for so many more triangles, which share their vertices as those of surfaces do. */
+static void expect_triangles(Parser *p, MeshDraft *d, uint32_t more, bool is_smooth)
+{
+    MeshData *m = d->mesh;
+    size_t corners = 3 * (size_t)m->triangle_count, vertices = m->vertex_count;
+    size_t wanted = vertices + more / 2 + more / 8;
+    if (is_smooth) {
+        size_t normals = d->normal_count, want = normals + more / 2 + more / 8;
+        m->normals = reserve(p, m->normals, normals, want, &d->normal_capacity, sizeof *m->normals);
+        weld_reserve(p, &d->normal_weld, m->normals, d->normal_count, want);
+        m->normal_corners = reserve(p, m->normal_corners, corners, corners + 3 * (size_t)more,
+                                    &d->normal_corner_capacity, sizeof *m->corners);
+        if (!d->has_smooth)
+            memset(m->normal_corners, 0xff, corners * sizeof *m->corners);
     }
-    for (int i = 0; i < 3; i++) {
-        t.corner[i] = add_vertex(p, d, corner[i]);
-        if (is_smooth)
-            t.normal[i] = add_normal(p, d, normal[i], word.span);
+    m->corners = reserve(p, m->corners, corners, corners + 3 * (size_t)more, &d->corner_capacity,
+                         sizeof *m->corners);
+    m->vertices =
+        reserve(p, m->vertices, vertices, wanted, &d->vertex_capacity, sizeof *m->vertices);
+    weld_reserve(p, &d->vertex_weld, m->vertices, m->vertex_count, wanted);
+}
+
+/* Triangles of plain vectors, which are one token. */
+static void read_plain_triangles(Parser *p, MeshDraft *d)
+{
+    Token token = parse_next(p);
+    const char *text = token.span.source->text, *end = text + token.span.end, *at = token.text;
+    expect_triangles(p, d, token.length, *at == 's');
+    for (uint32_t i = 0; i < token.length; i++) {
+        PlainTriangle plain;
+        MeshTriangle t;
+        V3 corner[3], normal[3];
+        Span span = {token.span.source, (uint32_t)(at - text), 0};
+        at = scan_triangle(at, end, &plain);
+        span.end = (uint32_t)(at - text);
+        at = scan_blanks(at, end);
+        for (int k = 0; k < 3; k++) {
+            corner[k] = v3(plain.corner[k][0], plain.corner[k][1], plain.corner[k][2]);
+            if (plain.is_smooth)
+                normal[k] = v3(plain.normal[k][0], plain.normal[k][1], plain.normal[k][2]);
+        }
+        memcpy(t.uv, no_corners, sizeof t.uv);
+        memcpy(t.texture, no_corners, sizeof t.texture);
+        keep_triangle(p, d, corner, plain.is_smooth ? normal : NULL, &t, span);
     }
-    add_triangle(p, d, &t);
 }
 
 static void read_inside_vector(Parser *p, MeshData *mesh)
@@ -214,6 +362,8 @@ Node *read_mesh(Parser *p)
         TokenKind kind = parse_peek(p)->kind;
         if (kind == KW_TRIANGLE || kind == KW_SMOOTH_TRIANGLE)
             read_mesh_triangle(p, &d, kind == KW_SMOOTH_TRIANGLE);
+        else if (kind == TOKEN_TRIANGLES)
+            read_plain_triangles(p, &d);
         else if (parse_accept(p, KW_INSIDE_VECTOR))
             read_inside_vector(p, d.mesh);
         else
@@ -314,7 +464,7 @@ static void read_normal_vectors(Parser *p, MeshDraft *d)
     d->normal_count = 0;
     for (uint32_t i = 0; i < list.count; i++) {
         V3 normal = next_vector(&list, 3);
-        add_normal(p, d, normal, parse_last_span(p));
+        add_normal(p, d, unit_normal(p, d, normal, parse_last_span(p)));
     }
     close_list(&list, "normal_vectors");
 }

@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 enum {
     DIGITS_EXACT = 15, /* a decimal of so many digits is exact in a double */
@@ -83,4 +84,38 @@ const char *scan_vector(const char *at, const char *end, int size, double *out)
         at = scan_blanks(at, end);
     }
     return at < end && *at == '>' ? at + 1 : NULL;
+}
+
+/* Skip a word; NULL if it is another one. */
+static const char *scan_word(const char *at, const char *end, const char *word)
+{
+    size_t length = strlen(word);
+    if ((size_t)(end - at) <= length || memcmp(at, word, length) != 0)
+        return NULL;
+    at = scan_blanks(at + length, end);
+    return at < end && *at == '{' ? scan_blanks(at + 1, end) : NULL;
+}
+
+/* Read a vector of 3 that ends as an expression there, and the comma behind it. */
+static const char *scan_item(const char *at, const char *end, double out[3])
+{
+    at = scan_vector(at, end, 3, out);
+    if (!at)
+        return NULL;
+    at = scan_blanks(at, end);
+    if (at < end && *at == ',')
+        at = scan_blanks(at + 1, end);
+    return at < end && (*at == '<' || *at == '}') ? at : NULL;
+}
+
+const char *scan_triangle(const char *at, const char *end, PlainTriangle *out)
+{
+    out->is_smooth = at < end && *at == 's';
+    at = scan_word(at, end, out->is_smooth ? "smooth_triangle" : "triangle");
+    for (int i = 0; i < 3 && at; i++) {
+        at = scan_item(at, end, out->corner[i]);
+        if (at && out->is_smooth)
+            at = scan_item(at, end, out->normal[i]);
+    }
+    return at && *at == '}' ? at + 1 : NULL;
 }

@@ -170,7 +170,7 @@ void trace_shadow_bundle(const Tracer *tracer, const ShapePoint *from, V3 to_cen
     double distance = v3_len(to_center);
     out->count = -1;
     radius = radius * WIDER + 1e-9 * distance;
-    if (!(radius < distance))
+    if (!tracer->bundles || !(radius < distance))
         return;
     /* All rays must leave on one side of the surface: then they start at the same point. */
     double above = fabs(v3_dot(to_center, from->ng));

@@ -278,6 +278,14 @@ done:
     return status;
 }
 
+static bool has_area_light(const Tracer *tracer)
+{
+    for (int i = 0; i < tracer->scene->light_count; i++)
+        if (plan_light_has_area(tracer->plan, &tracer->scene->lights[i]))
+            return true;
+    return false;
+}
+
 /* Find what absorbs the light of lamps right where they stand. */
 static void find_light_interiors(Tracer *tracer)
 {
@@ -324,7 +332,7 @@ Status tracer_new(const Scene *scene, const Plan *plan, int threads, Diag *diag,
     Status status = index_objects(tracer, threads, diag);
     if (status == OK)
         status = make_shadow_views(tracer, threads, diag);
-    if (status == OK) {
+    if (status == OK && has_area_light(tracer)) {
         tracer->bundles = bundle_index_new(tracer->objects, scene->object_count);
         status = tracer->bundles ? OK : diag_no_memory(diag, "the tracer");
     }

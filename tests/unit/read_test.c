@@ -170,6 +170,39 @@ static void test_mesh_and_mesh2_give_the_same_triangles(void **state)
     scene_free(scene);
 }
 
+/* Triangles of plain vectors are scanned, those with anything else are parsed: they are the same
+ * mesh, and points that several share are kept once. */
+static void test_plain_triangles_are_scanned(void **state)
+{
+    (void)state;
+    Scene *scene = scene_of(
+        "mesh { triangle { <0, 0, 0>, <1, 0, 0>, <0, 1, 0> }\n"
+        "  smooth_triangle{<0,0,0>,<0,0,-1>,<1,0,0>,<0,0,-2> <0,1e0,0> <0,1,-1>,}\n"
+        "  triangle { <0, 0, 0>, <1, 0, 0>, <.5, 0, 0> }\n"
+        "  triangle { <0, 0, 0>, <1, 0, 0>, <0, 0, 2> texture { pigment { rgb 1 } } }\n"
+        "  triangle { <0, 0, 0>, <1, 0, 0>, <0, 0, 2> * 2 }\n"
+        "  triangle { <0, 0, 0>, <1, 0, 0>, <0, 0, -2.5> } triangle { <0,0,0>,<0,0,2>,<0,1,0> } }\n"
+        "mesh { triangle { 0, x, y } smooth_triangle { 0, -z, x, -2*z, y, <0, 1, -1> }\n"
+        "  triangle { 0, x, x/2 } triangle { 0, x, 2*z texture { pigment { rgb 1 } } }\n"
+        "  triangle { 0, x, 4*z } triangle { 0, x, -2.5*z } triangle { 0, 2*z, y } }");
+    const MeshData *a = scene->meshes[0], *b = scene->meshes[1];
+    size_t bytes = 6 * 3 * sizeof(uint32_t);
+    assert_int_equal(a->triangle_count, 6);
+    assert_int_equal(b->triangle_count, 6);
+    assert_int_equal(a->vertex_count, 6);
+    assert_int_equal(b->vertex_count, 6);
+    assert_memory_equal(a->corners, b->corners, bytes);
+    assert_memory_equal(a->normal_corners, b->normal_corners, bytes);
+    assert_memory_equal(a->textures, b->textures, bytes);
+    for (uint32_t i = 0; i < 6; i++)
+        assert_true(v3_dist(a->vertices[i], b->vertices[i]) == 0);
+    assert_true(is_at(a->vertices[a->corners[14]], 0, 0, -2.5));
+    const uint32_t *n = a->normal_corners;
+    assert_true(n[0] == UINT32_MAX && n[3] == n[4] && n[5] != n[4] && n[6] == UINT32_MAX);
+    assert_true(a->textures[5] == MESH_NO_TEXTURE && a->textures[6] == 0);
+    scene_free(scene);
+}
+
 static void test_instances_share_their_mesh(void **state)
 {
     (void)state;
@@ -533,6 +566,7 @@ int main(void)
         cmocka_unit_test(test_clips_move_with_the_object),
         cmocka_unit_test(test_names_reach_the_scene),
         cmocka_unit_test(test_mesh_and_mesh2_give_the_same_triangles),
+        cmocka_unit_test(test_plain_triangles_are_scanned),
         cmocka_unit_test(test_instances_share_their_mesh),
         cmocka_unit_test(test_mesh_textures_are_listed_once),
         cmocka_unit_test(test_layers_lie_in_written_order),

@@ -146,6 +146,7 @@ static void test_bundles_agree_with_single_rays(void **state)
         world_add(&w, shape, i % 4 ? red : half, &air);
     }
     world_add(&w, shape_plane(w.scene.arena, v3(0, 1, 0), 0), red, &air);
+    w.lights[0].area.size1 = w.lights[0].area.size2 = 2;
     world_ready(&w);
     V3 lamp = v3(1, 4, -2);
     int empty = 0, rays = 0, shadows = 0;
