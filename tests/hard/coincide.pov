@@ -102,7 +102,7 @@ Stage()
 #case (14) // a box, a cylinder and a cone on top of each other; 2
   object { Tower material { Solid } }
 #break
-#case (15) // a box, a cylinder and a cone on top of each other, in glass; 60
+#case (15) // a box, a cylinder and a cone on top of each other, in glass; 100
   object { Tower material { Glass } }
 #break
 #case (16) // a prism cut flush out of a box; 2

@@ -48,7 +48,7 @@ light_source { <-9, 9, -3>, rgb 0.1 }
 #case (5) // a lamp under a height_field, in a box without a lid that it closes; 0
   Lamp(<0.1, -0.7, -0.1>, 50)
   height_field { function 50, 50 { 0.5 + 0.4*sin(20*x)*cos(17*y) } scale <1.6, 0.5, 1.6> translate <-0.8, -0.3, -0.8> }
-  difference { box { <-0.8, -1.1, -0.8>, <0.8, 0, 0.8> } box { <-0.8, -2, -0.8>, <0.8, 1, 0.8> scale <1 - 1e-3, 1, 1 - 1e-3> } }
+  difference { box { <-0.8, -1.1, -0.8>, <0.8, 0.3, 0.8> } box { <-0.8, -2, -0.8>, <0.8, 1, 0.8> scale <1 - 1e-3, 1, 1 - 1e-3> } }
 #break
 #case (6) // a lamp behind two walls that meet in a line; 0
   Lamp(<0.3, 0.5, 6>, 50)

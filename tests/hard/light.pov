@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #version 3.7;
 #include "stage.inc"
-global_settings { assumed_gamma 1 max_trace_level 30 adc_bailout 1e-5 }
+global_settings { assumed_gamma 1 max_trace_level 60 adc_bailout 1e-5 }
 #declare Clear = material { texture { pigment { rgbt 1 } finish { ambient 0 diffuse 0 } } interior { ior 1 } }
 #macro Camera_In (P) camera { location P right x*4/3 angle 38 look_at <0, -0.15, 0.1> } #end
 #declare Eye = <1.13, 1.71, -3.97>;

@@ -92,8 +92,7 @@ static inline bool picture_by_pms(const Shot *shot, Image *out)
     return true;
 }
 
-/* Returns false if povray makes no picture of it. */
-static inline bool picture_by_povray(const Shot *shot, Image *out)
+static inline bool run_povray(const Shot *shot, Image *out)
 {
     Declares declares;
     declares_read(shot, &declares);
@@ -123,6 +122,12 @@ static inline bool picture_by_povray(const Shot *shot, Image *out)
     remove(log);
     diag_done(&diag);
     return is_made;
+}
+
+/* Returns false if povray makes no picture of it, twice: a crowded machine may be in its way. */
+static inline bool picture_by_povray(const Shot *shot, Image *out)
+{
+    return run_povray(shot, out) || run_povray(shot, out);
 }
 
 static inline bool picture_make(const Shot *shot, Image *out)

@@ -74,6 +74,7 @@ typedef struct ShapeCase {
     char name[NAME_BYTES];
     char declares[64];
     const Move *move;
+    bool is_slow;
 } ShapeCase;
 
 static int width_of(bool is_by_povray)
@@ -121,7 +122,7 @@ static void check_shape(void **state)
     char text[32];
     snprintf(text, sizeof text, "at most %d", limit);
     hard_row(c->name, text, "%d pixels %s", wrong, is_exact ? "changed" : "differ");
-    if (verdict_wants_povray()) {
+    if (verdict_wants_povray() && !c->is_slow) {
         Verdict povray = verdict_of(c, true);
         verdict_row_povray(c->name, &povray, is_exact ? povray.changed : povray.visible, limit);
     }
@@ -131,6 +132,7 @@ static void check_shape(void **state)
 typedef struct ListedShape {
     char name[NAME_BYTES];
     bool is_convex, is_around; /* around the origin, without a gap */
+    bool is_slow;              /* in povray */
 } ListedShape;
 
 /* Read the list: "#case (N) // NAME, convex, around". */
@@ -147,6 +149,7 @@ static int read_shapes(ListedShape *out)
             continue;
         shape->is_convex = strstr(rest, "convex");
         shape->is_around = strstr(rest, "around");
+        shape->is_slow = strstr(rest, "slow");
         assert_int_equal(++count, number);
     }
     fclose(file);
@@ -179,6 +182,7 @@ static bool make_case(const ListedShape *shape, int number, const Move *move, bo
     snprintf(out->declares, sizeof out->declares, "Shape=%d Glass=%d%s", number, is_glass,
              strstr(move->declare, "Far") ? " Far=4" : "");
     out->move = move;
+    out->is_slow = shape->is_slow;
     return is_wanted(shape, move, is_glass);
 }
 

@@ -39,7 +39,7 @@ Stage()
 #case (5) // a pipe of glass with a wall of 1e-6; 150
   object { Pipe material { Glass } }
 #break
-#case (6) // a hollow ring of glass with a wall of 1e-6; 150
+#case (6) // a hollow ring of glass with a wall of 1e-6; 250
   object { Ring_Shell material { Glass } }
 #break
 #case (7) // a ball shell of glass with a wall of 1 %, made in two ways; 2
@@ -49,13 +49,13 @@ Stage()
     difference { sphere { 0, 0.9 } sphere { 0, 0.891 } material { Glass } }
   #end
 #break
-#case (8) // a lens cut from two balls of radius 1e5; 8
+#case (8) // a lens cut from two balls of radius 1e5; 20
   object { Lens((Sound ? 1e4 : 1e5)) material { Plain } }
 #break
-#case (9) // an opaque lens cut from two balls of radius 1e5; 8
+#case (9) // an opaque lens cut from two balls of radius 1e5; 20
   object { Lens((Sound ? 1e4 : 1e5)) material { Solid } }
 #break
-#case (10) // a lens cut from two balls of radius 1e6, its rim as thin as numbers are coarse; 250
+#case (10) // a lens cut from two balls of radius 1e6, its rim as thin as numbers are coarse; 400
   object { Lens((Sound ? 1e4 : 1e6)) material { Plain } }
 #break
 #case (11) // a square of 3000 needle triangles; 2
