@@ -10,6 +10,7 @@ for name in "$@"; do
     [ "$name" = caustic_glass ] && size="+W640 +H480"
     [ "$name" = cornell_box ] && size="+W300 +H300"
     aa="+AM2 +A0.05 +R3"
+    [ "$name" = shapes ] && size="+W960 +H400"
     [ "$name" = macros_loops ] && aa=-A # its focal blur smooths enough
     [ "$name" = church_window ] && aa="+AM2 +A0.1 +R2" # fine lead all over the window
     picture=scenes/gallery/$name.png
