@@ -7,20 +7,29 @@
  *
  * A line is walked through by steps.  Squares and cubes tell from how fast they escape how far the
  * set is at least: with a potential G the distance is no less than G/(2|G'|); others are looked at
- * every so often.  Where a step goes in or out, halving finds the place.
+ * every so often.
  * SPDX-License-Identifier: Apache-2.0 */
+#include "math/bracket.h"
 #include "shape/shape_int.h"
 
 #include <complex.h>
+#include <float.h>
 
-enum { HALVINGS = 60, FAR_ITERATIONS = 12 };
+enum { FAR_ITERATIONS = 12 };
 
 /* Steps are no shorter than this part of what the precision asks for: what is finer may be missed.
  */
 #define STEP_PART 0.25
 
+/* Steps are so much longer than is known to be empty; where the next place does not know the rest
+ * to be empty, they are taken back. */
+#define STEP_REACH 1.28
+
 /* Norm squared of what has escaped far enough for its potential. */
-#define FAR_NORM 1e12
+#define FAR_NORM 1e6
+
+/* Heights below this are on the surface. */
+#define HEIGHT_SMALL (8 * EPS_DOUBLE)
 
 /* How far off the set a point found on it may be, in radii: the set is rough. */
 #define POINT_ROUNDING 1e-9
@@ -43,43 +52,82 @@ typedef struct Fate {
     double distance; /* in 4D, to the set at least; 0: not known */
 } Fate;
 
-static double radius_of(const JuliaForm *form)
+/* A form, and what follows from it. */
+struct JuliaData {
+    JuliaForm form;
+    double radius;  /* of a ball around all of it whose border is outside */
+    double limit2;  /* what the norm squared of no iteration is above */
+    double height;  /* the fourth coordinate at the origin */
+    V3 slope;       /* of the fourth coordinate */
+    double surface; /* potential of the surface: of that norm in the last iteration */
+};
+
+/* What no iteration may be above: that of the language. */
+static double limit_of(const JuliaForm *form)
 {
     double c = sqrt(form->c[0] * form->c[0] + form->c[1] * form->c[1] + form->c[2] * form->c[2] +
                     form->c[3] * form->c[3]);
     return form->is_hypercomplex ? 4 : num_min(2, 1 + c * (1 + 0x1p-40));
 }
 
-/* The radius of a ball around the set whose border is outside: what has not escaped at once is
- * within the square root of limit2_of. */
-static double reach_of(const JuliaForm *form)
+static double degree_of(const JuliaForm *form)
 {
-    return radius_of(form) * (1 + 0x1p-20);
+    return form->function == JULIA_CUBE && !form->is_hypercomplex ? 3 : 2;
+}
+
+/* Return how far out a number can begin that adds c each time and is at `limit` last: |z^n + c| is
+ * no less than |z|^n - |c|. */
+static double first_of(double limit, double c, double degree, int iterations)
+{
+    double most = limit;
+    for (int i = 1; i < iterations; i++)
+        most = num_min(limit, pow(most + c, 1 / degree));
+    return most;
+}
+
+/* Return the radius of a ball around the set. */
+static double radius_of(const JuliaForm *form)
+{
+    const double *c = form->c;
+    double limit = limit_of(form);
+    if (!form->is_hypercomplex)
+        return first_of(limit, hypot(hypot(c[0], c[1]), hypot(c[2], c[3])), degree_of(form),
+                        form->iterations);
+    if (form->function != JULIA_SQR && form->function != JULIA_CUBE)
+        return limit;
+    double most = limit * sqrt(2);
+    double a = first_of(most, hypot(c[0] - c[3], c[1] + c[2]), 2, form->iterations);
+    double b = first_of(most, hypot(c[0] + c[3], c[1] - c[2]), 2, form->iterations);
+    return num_min(limit, sqrt(0.5 * (a * a + b * b)));
 }
 
 Shape *shape_julia(Arena *arena, const JuliaForm *form)
 {
     Shape *shape = leaf_new(arena, SHAPE_JULIA);
-    JuliaForm *own = arena_copy(arena, form, sizeof *form);
-    if (!shape || !own)
+    JuliaData *data = ARENA_NEW(arena, JuliaData);
+    if (!shape || !data)
         return NULL;
-    shape->u.julia = own;
+    /* Hypercomplex: of each of the two numbers the square is no more than twice that of both. */
+    double limit = limit_of(form), limit2 = limit * limit;
+    double most2 = form->is_hypercomplex ? 2 * limit2 : limit2;
+    *data = (JuliaData){
+        .form = *form,
+        .radius = radius_of(form) * (1 + 0x1p-20),
+        .limit2 = form->is_hypercomplex ? limit2 : limit2 * (1 + 0x1p-24),
+        .height = form->slice_distance / form->slice[3],
+        .slope = v3(-form->slice[0] / form->slice[3], -form->slice[1] / form->slice[3],
+                    -form->slice[2] / form->slice[3]),
+        .surface = 0.5 * log(most2) * pow(degree_of(form), 1 - form->iterations),
+    };
+    shape->u.julia = data;
     leaf_place(shape, &XFORM_IDENTITY);
     return shape;
 }
 
 /* The fourth coordinate of a point of the slice. */
-static double fourth(const JuliaForm *form, V3 p)
+static double fourth(const JuliaData *data, V3 p)
 {
-    const double *n = form->slice;
-    return (form->slice_distance - n[0] * p.x - n[1] * p.y - n[2] * p.z) / n[3];
-}
-
-/* The norm squared above which a number has escaped. */
-static double limit2_of(const JuliaForm *form)
-{
-    double radius = radius_of(form);
-    return form->is_hypercomplex ? 16 : radius * radius * (1 + 0x1p-24);
+    return data->height + v3_dot(data->slope, p);
 }
 
 /* On the surface the norm squared of one of the iterations is the limit: its gradient is square to
@@ -124,36 +172,45 @@ static Quaternion quaternion_slope(const JuliaForm *form, Quaternion q, Quaterni
     return (Quaternion){2 * r * dr - dd, v3_mad(v3_scale(q.v, 2 * dr), 2 * r, dq.v)};
 }
 
-/* After `number` steps |z|^2 is `n2`, and it has escaped; the derivative has grown by `growth`. */
-static double distance_of(const JuliaForm *form, double limit2, double n2, double growth,
-                          int number, double degree)
+/* How far the surface is at least, when |z|^2 is n2 and far out, its derivative has grown by the
+ * square root of growth2, and degree^steps is `power`: the potential is ln|z| / power. */
+static double distance_of(const JuliaData *data, double n2, double growth2, double power)
 {
-    /* The potential is ln|z| / degree^number; that of the surface is what the last test asks. */
-    int left = number + 1 - form->iterations;
-    double share = degree == 2 ? ldexp(1, left) : pow(degree, left);
-    double rest = 0.5 * log(limit2) * share;
-    double length = sqrt(n2), above = log(length) - rest;
-    return above > 0 ? 0.5 * above * length / growth : 0;
+    double above = 0.5 * log(n2) - data->surface * power;
+    return above > 0 ? 0.5 * above * sqrt(n2 / growth2) : 0;
 }
 
-static Fate quaternion_fate(const JuliaForm *form, V3 p)
+static Fate quaternion_fate(const JuliaData *data, V3 p)
 {
-    Quaternion q = {p.x, v3(p.y, p.z, fourth(form, p))};
-    double limit2 = limit2_of(form), growth = 1;
-    double degree = form->function == JULIA_CUBE ? 3 : 2;
-    int escaped = -1;
+    const JuliaForm *form = &data->form;
+    Quaternion q = {p.x, v3(p.y, p.z, fourth(data, p))};
+    double growth2 = 1, power = 1, degree = degree_of(form);
+    bool is_cube = degree == 3, has_escaped = false;
     for (int i = 0; i < form->iterations + FAR_ITERATIONS; i++) {
         double n2 = norm2(q);
-        if (escaped < 0 && i >= form->iterations)
+        has_escaped = has_escaped || (n2 > data->limit2 && i < form->iterations);
+        if (!has_escaped && i >= form->iterations)
             return (Fate){.is_inside = true};
-        if (escaped < 0 && n2 > limit2)
-            escaped = i;
-        if (escaped >= 0 && n2 > FAR_NORM)
-            return (Fate){.distance = distance_of(form, limit2, n2, growth, i, degree)};
-        growth *= degree == 3 ? 3 * n2 : 2 * sqrt(n2);
+        if (has_escaped && n2 > FAR_NORM)
+            return (Fate){.distance = distance_of(data, n2, growth2, power)};
+        growth2 *= is_cube ? 9 * n2 * n2 : 4 * n2;
+        power *= degree;
         q = quaternion_step(form, q);
     }
-    return (Fate){.is_inside = escaped < 0};
+    return (Fate){.is_inside = !has_escaped};
+}
+
+/* The largest norm squared of an iteration, in units of the limit. */
+static double quaternion_norm(const JuliaData *data, V3 p)
+{
+    const JuliaForm *form = &data->form;
+    Quaternion q = {p.x, v3(p.y, p.z, fourth(data, p))};
+    double most = 0;
+    for (int i = 0; i < form->iterations && most < FAR_NORM; i++) {
+        most = fmax(most, norm2(q) / data->limit2);
+        q = quaternion_step(form, q);
+    }
+    return most;
 }
 
 static V3 quaternion_gradient(Quaternion q, const Quaternion d[3])
@@ -162,14 +219,13 @@ static V3 quaternion_gradient(Quaternion q, const Quaternion d[3])
               q.r * d[2].r + v3_dot(q.v, d[2].v));
 }
 
-static V3 quaternion_normal(const JuliaForm *form, V3 p, double tilt, bool is_last)
+static V3 quaternion_normal(const JuliaData *data, V3 p, double tilt, bool is_last)
 {
-    const double *n = form->slice;
-    Quaternion q = {p.x, v3(p.y, p.z, fourth(form, p))};
-    Quaternion d[3] = {{1, v3(0, 0, -tilt * n[0] / n[3])},
-                       {0, v3(1, 0, -tilt * n[1] / n[3])},
-                       {0, v3(0, 1, -tilt * n[2] / n[3])}};
-    Decider decider = {.limit2 = limit2_of(form), .off = INFINITY};
+    const JuliaForm *form = &data->form;
+    V3 w = v3_scale(data->slope, tilt);
+    Quaternion q = {p.x, v3(p.y, p.z, fourth(data, p))};
+    Quaternion d[3] = {{1, v3(0, 0, w.x)}, {0, v3(1, 0, w.y)}, {0, v3(0, 1, w.z)}};
+    Decider decider = {.limit2 = data->limit2, .off = INFINITY};
     for (int i = 0; i < form->iterations; i++) {
         if (decides(&decider, norm2(q)))
             decider.gradient = quaternion_gradient(q, d);
@@ -286,34 +342,59 @@ static bool is_square(const JuliaForm *form)
 }
 
 /* How far the set of one of the two complex numbers is at least, where it escapes. */
-static double square_distance(const JuliaForm *form, Complex z, Complex c)
+static double square_distance(const JuliaData *data, Complex z, Complex c)
 {
-    double growth = 1;
-    for (int i = 0; i < form->iterations + FAR_ITERATIONS; i++) {
+    double growth2 = 1, power = 1;
+    for (int i = 0; i < data->form.iterations + FAR_ITERATIONS; i++) {
         double n2 = squared(z);
         if (n2 > FAR_NORM)
-            return distance_of(form, 32, n2, growth, i, 2);
-        growth *= 2 * sqrt(n2);
-        z = apply(form, z) + c;
+            return distance_of(data, n2, growth2, power);
+        growth2 *= 4 * n2;
+        power *= 2;
+        z = apply(&data->form, z) + c;
     }
     return 0;
 }
 
-static Fate pair_fate(const JuliaForm *form, V3 p)
+static Pair pair_at(const JuliaData *data, V3 p)
 {
-    Pair z = pair_of(p.x, p.y, p.z, fourth(form, p)), start = z;
-    Pair c = pair_of(form->c[0], form->c[1], form->c[2], form->c[3]);
+    return pair_of(p.x, p.y, p.z, fourth(data, p));
+}
+
+static Pair pair_parameter(const JuliaForm *form)
+{
+    return pair_of(form->c[0], form->c[1], form->c[2], form->c[3]);
+}
+
+static Fate pair_fate(const JuliaData *data, V3 p)
+{
+    const JuliaForm *form = &data->form;
+    Pair z = pair_at(data, p), start = z, c = pair_parameter(form);
     for (int i = 0; i < form->iterations; i++) {
-        if (!(pair_norm2(z) <= 16)) {
+        if (!(pair_norm2(z) <= data->limit2)) {
             if (!is_square(form))
                 return (Fate){.distance = 0};
-            double a = square_distance(form, start.a, c.a);
-            double b = square_distance(form, start.b, c.b);
+            double a = square_distance(data, start.a, c.a);
+            double b = square_distance(data, start.b, c.b);
             return (Fate){.distance = num_max(a, b) * 0.7071067811865475};
         }
         z = (Pair){apply(form, z.a) + c.a, apply(form, z.b) + c.b};
     }
     return (Fate){.is_inside = true};
+}
+
+/* As quaternion_norm; no number counts as far out. */
+static double pair_norm(const JuliaData *data, V3 p)
+{
+    const JuliaForm *form = &data->form;
+    Pair z = pair_at(data, p), c = pair_parameter(form);
+    double most = 0;
+    for (int i = 0; i < form->iterations && most < FAR_NORM; i++) {
+        double n2 = pair_norm2(z) / data->limit2;
+        most = n2 >= 0 ? fmax(most, n2) : FAR_NORM;
+        z = (Pair){apply(form, z.a) + c.a, apply(form, z.b) + c.b};
+    }
+    return most;
 }
 
 static V3 pair_gradient(Pair z, const Pair d[3])
@@ -323,14 +404,13 @@ static V3 pair_gradient(Pair z, const Pair d[3])
               creal(conj(z.a) * d[2].a + conj(z.b) * d[2].b));
 }
 
-static V3 pair_normal(const JuliaForm *form, V3 p, double tilt, bool is_last)
+static V3 pair_normal(const JuliaData *data, V3 p, double tilt, bool is_last)
 {
-    const double *n = form->slice;
-    Pair z = pair_of(p.x, p.y, p.z, fourth(form, p));
-    Pair c = pair_of(form->c[0], form->c[1], form->c[2], form->c[3]);
-    Pair d[3] = {pair_of(1, 0, 0, -tilt * n[0] / n[3]), pair_of(0, 1, 0, -tilt * n[1] / n[3]),
-                 pair_of(0, 0, 1, -tilt * n[2] / n[3])};
-    Decider decider = {.limit2 = limit2_of(form), .off = INFINITY};
+    const JuliaForm *form = &data->form;
+    V3 w = v3_scale(data->slope, tilt);
+    Pair z = pair_at(data, p), c = pair_parameter(form);
+    Pair d[3] = {pair_of(1, 0, 0, w.x), pair_of(0, 1, 0, w.y), pair_of(0, 0, 1, w.z)};
+    Decider decider = {.limit2 = data->limit2, .off = INFINITY};
     for (int i = 0; i < form->iterations; i++) {
         if (decides(&decider, pair_norm2(z)))
             decider.gradient = pair_gradient(z, d);
@@ -345,68 +425,84 @@ static V3 pair_normal(const JuliaForm *form, V3 p, double tilt, bool is_last)
 
 /* --- along a line --------------------------------------------------------------------------- */
 
-static Fate fate_of(const JuliaForm *form, V3 p)
+static Fate fate_of(const JuliaData *data, V3 p)
 {
-    return form->is_hypercomplex ? pair_fate(form, p) : quaternion_fate(form, p);
+    return data->form.is_hypercomplex ? pair_fate(data, p) : quaternion_fate(data, p);
 }
 
 /* A walk along a line: p = o + t d. */
 typedef struct JuliaWalk {
     const Shape *shape;
+    const JuliaData *data;
     const LocalRay *ray;
-    double in, out, speed; /* t within the ball around the set; |d| */
-    double slice_speed;    /* how much faster the fourth dimension may make it */
+    double in, out; /* t within the ball around the set */
+    double speed;   /* |d| */
+    double reach;   /* t that is empty for sure, for each unit of distance */
+    double least;   /* t of the shortest steps */
 } JuliaWalk;
 
 static bool walk_begin(JuliaWalk *walk, const Shape *shape, const LocalRay *ray)
 {
-    const JuliaForm *form = shape->u.julia;
-    double a = v3_len2(ray->d), base = -v3_dot(ray->o, ray->d) / a, radius = reach_of(form);
-    double room = radius * radius - v3_len2(v3_mad(ray->o, base, ray->d));
-    const double *n = form->slice;
+    const JuliaData *data = shape->u.julia;
+    double a = v3_len2(ray->d), base = -v3_dot(ray->o, ray->d) / a;
+    double room = data->radius * data->radius - v3_len2(v3_mad(ray->o, base, ray->d));
     if (!(room > 0))
         return false;
-    double half = sqrt(room / a);
-    double tilt2 = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / (n[3] * n[3]);
-    *walk = (JuliaWalk){shape, ray, base - half, base + half, sqrt(a), sqrt(1 + tilt2)};
+    double half = sqrt(room / a), speed = sqrt(a);
+    /* The fourth coordinate makes a line longer. */
+    *walk = (JuliaWalk){.shape = shape,
+                        .data = data,
+                        .ray = ray,
+                        .in = base - half,
+                        .out = base + half,
+                        .speed = speed,
+                        .reach = 1 / (speed * sqrt(1 + v3_len2(data->slope))),
+                        .least = STEP_PART / (data->form.precision * speed)};
     return true;
+}
+
+static V3 walk_point(const JuliaWalk *walk, double t)
+{
+    return v3_mad(walk->ray->o, t, walk->ray->d);
 }
 
 static Fate walk_at(const JuliaWalk *walk, double t)
 {
-    return fate_of(walk->shape->u.julia, v3_mad(walk->ray->o, t, walk->ray->d));
+    return fate_of(walk->data, walk_point(walk, t));
+}
+
+/* What is 0 on the surface and negative inside. */
+static double walk_height(const void *ctx, double t)
+{
+    const JuliaWalk *walk = ctx;
+    V3 p = walk_point(walk, t);
+    double norm = walk->data->form.is_hypercomplex ? pair_norm(walk->data, p)
+                                                   : quaternion_norm(walk->data, p);
+    return log(norm + DBL_MIN);
 }
 
 /* Find where a step went in or out. */
-static double halve(const JuliaWalk *walk, double lo, double hi, bool is_inside)
+static double find_change(const JuliaWalk *walk, double lo, double hi)
 {
-    for (int i = 0; i < HALVINGS; i++) {
-        double middle = 0.5 * (lo + hi);
-        if (!(middle > lo && middle < hi))
-            break;
-        if (walk_at(walk, middle).is_inside == is_inside)
-            lo = middle;
-        else
-            hi = middle;
-    }
-    return hi;
+    double at_lo = walk_height(walk, lo), at_hi = walk_height(walk, hi);
+    return bracket_zero(walk_height, walk, lo, at_lo, hi, at_hi, HEIGHT_SMALL);
 }
 
-static V3 normal_of(const JuliaForm *form, V3 p, double tilt, bool is_last)
+static V3 normal_of(const JuliaData *data, V3 p, double tilt, bool is_last)
 {
-    V3 n = form->is_hypercomplex ? pair_normal(form, p, tilt, is_last)
-                                 : quaternion_normal(form, p, tilt, is_last);
+    V3 n = data->form.is_hypercomplex ? pair_normal(data, p, tilt, is_last)
+                                      : quaternion_normal(data, p, tilt, is_last);
     return v3_is_finite(n) ? v3_unit(n) : v3(0, 0, 0);
 }
 
 static void fill_crossing(const JuliaWalk *walk, double t, int8_t change, Crossing *out)
 {
-    const JuliaForm *form = walk->shape->u.julia;
-    V3 p = v3_mad(walk->ray->o, t, walk->ray->d), n = normal_of(form, p, 1, false);
-    double off = v3_sum_abs(local_error(walk->ray, t)) + 8 * PLACE_EPS * radius_of(form);
+    const JuliaData *data = walk->data;
+    V3 n = normal_of(data, walk_point(walk, t), 1, false);
+    double off = v3_sum_abs(local_error(walk->ray, t)) + 8 * PLACE_EPS * data->radius;
     double slant = fabs(v3_dot(n, walk->ray->d)) / walk->speed;
     /* A line that touches is off by no more than where a ball of that size is touched. */
-    double error = num_min(off / slant, sqrt(radius_of(form) * off)) / walk->speed;
+    double error = num_min(off / slant, sqrt(data->radius * off)) / walk->speed;
     LeafHit hit = {t, error + 4 * EPS_DOUBLE * fabs(t), 0, change, true};
     crossing_fill(walk->shape, &hit, out);
 }
@@ -414,13 +510,18 @@ static void fill_crossing(const JuliaWalk *walk, double t, int8_t change, Crossi
 /* Go from *t, whose fate is told, to the next change of it before `end`; false: there is none. */
 static bool walk_on(const JuliaWalk *walk, double *t, double end, Fate *fate)
 {
-    double least = STEP_PART / (walk->shape->u.julia->precision * walk->speed);
+    double reach = STEP_REACH;
     while (*t < end) {
-        double known = fate->distance / (walk->slice_speed * walk->speed);
-        double next = num_min(*t + num_max(known, least), end);
+        double known = fate->distance * walk->reach;
+        double next = num_min(*t + num_max(reach * known, walk->least), end);
         Fate there = walk_at(walk, next);
+        if (reach > 1 && next - *t > num_max(known, walk->least) + there.distance * walk->reach) {
+            reach = 1;
+            continue;
+        }
+        reach = STEP_REACH;
         if (there.is_inside != fate->is_inside) {
-            *t = halve(walk, *t, next, fate->is_inside);
+            *t = find_change(walk, *t, next);
             *fate = (Fate){.is_inside = there.is_inside};
             return true;
         }
@@ -483,25 +584,25 @@ static bool julia_closest(const Shape *shape, const Ray *ray, ShapeScratch *scra
  * fourth coordinate did not change: so POV-Ray shades it. */
 static void julia_point(const Shape *shape, const Crossing *crossing, V3 p, LocalPoint *out)
 {
-    const JuliaForm *form = shape->u.julia;
-    V3 n = normal_of(form, p, 1, false), shown = normal_of(form, p, 0, true);
+    const JuliaData *data = shape->u.julia;
+    V3 n = normal_of(data, p, 1, false), shown = normal_of(data, p, 0, true);
     (void)crossing;
     out->p = p;
     out->ng = v3_len2(n) > 0 ? n : v3(1, 0, 0);
     out->is_smooth = v3_len2(shown) > 0;
     out->ns = v3_dot(shown, out->ng) < 0 ? v3_neg(shown) : shown;
-    out->error = POINT_ROUNDING * radius_of(form);
+    out->error = POINT_ROUNDING * data->radius;
 }
 
 static bool julia_is_inside(const Shape *shape, V3 p)
 {
-    double radius = reach_of(shape->u.julia);
-    return v3_len2(p) <= radius * radius && fate_of(shape->u.julia, p).is_inside;
+    const JuliaData *data = shape->u.julia;
+    return v3_len2(p) <= data->radius * data->radius && fate_of(data, p).is_inside;
 }
 
 static Bound julia_bound(const Shape *shape)
 {
-    double r = reach_of(shape->u.julia);
+    double r = shape->u.julia->radius;
     Bound b = bound_pad((Bound){v3(-r, -r, -r), v3(r, r, r)});
     return shape->is_transformed ? bound_pad(bound_transform(b, &shape->xform)) : b;
 }

@@ -162,6 +162,7 @@ typedef struct JuliaForm {
     double slice[4];       /* n, unit; n[3] is not 0 */
     double slice_distance;
 } JuliaForm;
+typedef struct JuliaData JuliaData;
 
 /* How much rounding a leaf's own numbers bring: derived when it is made or transformed. */
 typedef struct ShapeRounding {
@@ -195,7 +196,7 @@ struct Shape {
         OvusParams ovus;
         TriangleParams triangle;
         IsosurfaceParams iso;
-        const JuliaForm *julia;
+        const JuliaData *julia;
         const ParametricData *parametric; /* shared by copies */
         const MeshData *mesh; /* shared between instances, like those below */
         const PolygonData *polygon;

@@ -5,6 +5,7 @@
  * it is convex along a line: Newton's method from outside never passes the surface.  Otherwise the
  * line is cut at the planes between octants, where N has cusps, and halved until bounds on
  * N, or on its slope, tell what happens.  SPDX-License-Identifier: Apache-2.0 */
+#include "math/bracket.h"
 #include "shape/shape_int.h"
 
 /* Bound on the relative rounding of N, for exponents of 1; small p and q raise it. */
@@ -163,8 +164,9 @@ static V3 line_at(const SuperLine *l, double t)
     return v3_mad(l->o, t, l->d);
 }
 
-static double height_at(const SuperLine *l, double t)
+static double height_at(const void *ctx, double t)
 {
+    const SuperLine *l = ctx;
     return norm_at(l->s, line_at(l, t)) - 1;
 }
 
@@ -287,29 +289,6 @@ static bool is_monotone(const SuperLine *l, const Corner *c, double middle)
     return least > 0 || most < 0;
 }
 
-/* Find the change of sign on [a, b] by halving and secants. */
-static double find_between(const SuperLine *l, double a, double b, double fa, double fb)
-{
-    for (int i = 0; i < 120; i++) {
-        double t = i % 3 == 2 ? 0.5 * (a + b) : (a * fb - b * fa) / (fb - fa);
-        if (!(t > a && t < b))
-            t = 0.5 * (a + b);
-        if (!(t > a && t < b))
-            break;
-        double f = height_at(l, t);
-        if (f == 0)
-            return t;
-        if ((f > 0) == (fa > 0)) {
-            a = t;
-            fa = f;
-        } else {
-            b = t;
-            fb = f;
-        }
-    }
-    return 0.5 * (a + b);
-}
-
 typedef struct HitList {
     LeafHit *at;
     int count, most;
@@ -401,35 +380,9 @@ static int slope_sign(const SuperLine *l, const SuperPlace *a, const SuperPlace 
     return least > 0 ? 1 : most < 0 ? -1 : 0;
 }
 
-/* Find the change of sign between two places: by secants, each of which halves what the end that
- * stays counts for (the Illinois method). */
-static double root_between(const SuperLine *l, const SuperPlace *from, const SuperPlace *to)
+static double sum_at(const void *ctx, double t)
 {
-    double a = from->t, b = to->t, fa = from->sum - 1, fb = to->sum - 1;
-    double certain = 0.25 * l->s->q * norm_error(l->s);
-    int kept = 0;
-    for (int i = 0; i < 200; i++) {
-        double t = (i & 15) == 15 ? 0.5 * (a + b) : (a * fb - b * fa) / (fb - fa);
-        if (!(t > a && t < b))
-            t = 0.5 * (a + b);
-        if (!(t > a && t < b))
-            break;
-        double f = place_at(l, t).sum - 1;
-        if (fabs(f) <= certain)
-            return t;
-        if ((f > 0) == (fa > 0)) {
-            a = t;
-            fa = f;
-            fb *= kept > 0 ? 0.5 : 1;
-            kept = 1;
-        } else {
-            b = t;
-            fb = f;
-            fa *= kept < 0 ? 0.5 : 1;
-            kept = -1;
-        }
-    }
-    return 0.5 * (a + b);
+    return place_at(ctx, t).sum - 1;
 }
 
 static void search_powers(const SuperLine *l, const SuperPlace *a, const SuperPlace *b, int depth,
@@ -440,8 +393,10 @@ static void search_powers(const SuperLine *l, const SuperPlace *a, const SuperPl
         return;
     double middle = 0.5 * (a->t + b->t);
     if (depth >= DEPTH_MAX || !(middle > a->t && middle < b->t) || slope_sign(l, a, b) != 0) {
+        double fa = a->sum - 1, fb = b->sum - 1, small = 0.25 * l->s->q * norm_error(l->s);
         if (is_crossed)
-            add_crossing(l, root_between(l, a, b), a->sum > 1 ? 1 : -1, out);
+            add_crossing(l, bracket_zero(sum_at, l, a->t, fa, b->t, fb, small), fa > 0 ? 1 : -1,
+                         out);
         return;
     }
     SuperPlace m = place_at(l, middle);
@@ -465,7 +420,7 @@ static void search(const SuperLine *l, double a, double b, double fa, double fb,
     double middle = 0.5 * (a + b);
     if (depth >= DEPTH_MAX || !(middle > a && middle < b) || is_monotone(l, &c, middle)) {
         if (is_crossed)
-            add_crossing(l, find_between(l, a, b, fa, fb), fa > 0 ? 1 : -1, out);
+            add_crossing(l, bracket_zero(height_at, l, a, fa, b, fb, 0), fa > 0 ? 1 : -1, out);
         return;
     }
     double f = height_at(l, middle);

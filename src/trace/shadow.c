@@ -25,6 +25,7 @@ typedef struct ShadowQuery {
     int light_index;
     bool blocks_targets;
     uint32_t blocker;
+    uint32_t passed; /* an object that is known not to block this ray; NO_OBJECT: none is */
     int count, capacity;
     Filter *filters;
     Filter few[FILTERS_FEW];
@@ -60,7 +61,7 @@ static bool may_block(const ShadowQuery *query, uint32_t object)
 static bool test_object(ShadowQuery *query, uint32_t object, const Ray *ray)
 {
     const TracedObject *traced = &query->tracer->objects[object];
-    if (traced->shadow == SHADOW_NONE)
+    if (traced->shadow == SHADOW_NONE || object == query->passed)
         return false;
     if (!may_block(query, object) && note_filter(query, object))
         return false;
@@ -147,8 +148,12 @@ static bool find_in_bundle(ShadowQuery *query, const Ray *ray, const ShadowBundl
 static bool is_still_blocked(ShadowQuery *query, const Ray *ray, int light)
 {
     uint32_t last = light >= 0 ? query->thread->blockers[light] : NO_OBJECT;
-    return last != NO_OBJECT && may_block(query, last) &&
-           !object_is_missed(&query->tracer->objects[last], ray) && test_object(query, last, ray);
+    if (last == NO_OBJECT || !may_block(query, last))
+        return false;
+    if (!object_is_missed(&query->tracer->objects[last], ray) && test_object(query, last, ray))
+        return true;
+    query->passed = last;
+    return false;
 }
 
 static bool is_solid_texture(const Texture *texture)
@@ -372,6 +377,7 @@ Rgb trace_shadow_of(TraceThread *thread, const ShadowBundle *bundle, const Shape
     query.light = light >= 0 ? &thread->tracer->scene->lights[light] : NULL;
     query.light_index = light;
     query.blocks_targets = blocks_targets;
+    query.passed = NO_OBJECT;
     query.count = 0;
     query.capacity = FILTERS_FEW;
     query.filters = query.few;
