@@ -49,7 +49,7 @@ ALLCFLAGS := -std=c17 -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 $(BASEFLAGS)
 ALLCXXFLAGS := -std=c++17 $(BASEFLAGS) $(WARN) $(CXXFLAGS)
 LIBS     := $(PKGLIB) -lm -lstdc++ -lpthread
 
-.PHONY: all help deps demo check check-all check-kill check-study parity bench bench-accuracy fuzz gallery floors headers install uninstall clean
+.PHONY: all help deps demo check check-all check-kill check-study parity bench bench-accuracy bench-shapes fuzz gallery floors headers install uninstall clean
 .DEFAULT_GOAL := all
 .SECONDARY:
 
@@ -115,6 +115,11 @@ bench: deps ## ratios against nanoflann, Embree and povray, measured in one run
 .PHONY: bench-built
 bench-built: $(B)/pms $(BENCH)
 	$(Q)PMS=$(B)/pms BUILD=$(B) tests/bench/run.sh
+
+bench-shapes: deps ## time every shape, and big scenes, against povray (ten minutes)
+	$(Q)$(MAKE) --no-print-directory $(B)/pms $(B)/tests/bench/roots_bench
+	$(Q)$(B)/tests/bench/roots_bench
+	$(Q)PMS=$(B)/pms tests/bench/shapes.pl
 
 bench-accuracy: deps ## estimated errors against true ones, for every scene (two hours)
 	$(Q)$(MAKE) --no-print-directory $(B)/tests/bench/accuracy_bench
