@@ -51,8 +51,8 @@ static bool surface_has_highlights(const Surface *surface)
 {
     if (texture_has_highlights(surface->texture) || texture_has_highlights(surface->inner_texture))
         return true;
-    for (int i = 0; i < surface->mesh_texture_count; i++)
-        if (texture_has_highlights(surface->mesh_textures[i]))
+    for (int i = 0; i < surface->part_texture_count; i++)
+        if (texture_has_highlights(surface->part_textures[i]))
             return true;
     return false;
 }
@@ -74,8 +74,8 @@ bool plan_surface_glows(const Plan *plan, const Surface *surface)
     if (texture_glows(surface->texture, has_ambient) ||
         texture_glows(surface->inner_texture, has_ambient))
         return true;
-    for (int i = 0; i < surface->mesh_texture_count; i++)
-        if (texture_glows(surface->mesh_textures[i], has_ambient))
+    for (int i = 0; i < surface->part_texture_count; i++)
+        if (texture_glows(surface->part_textures[i], has_ambient))
             return true;
     return false;
 }

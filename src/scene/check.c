@@ -6,8 +6,8 @@
 
 static bool mesh_texture_has(const Surface *s, bool (*has)(const Texture *texture))
 {
-    for (int i = 0; i < s->mesh_texture_count; i++)
-        if (has(s->mesh_textures[i]))
+    for (int i = 0; i < s->part_texture_count; i++)
+        if (has(s->part_textures[i]))
             return true;
     return false;
 }

@@ -75,20 +75,20 @@ static bool move_interior(Move *move, const Interior **interior)
     return move->inside_to != NULL;
 }
 
-static bool move_mesh_textures(Move *move, Node *node)
+static bool move_part_textures(Move *move, Node *node)
 {
-    if (node->mesh_texture_count == 0)
+    if (node->part_texture_count == 0)
         return true;
-    size_t count = (size_t)node->mesh_texture_count;
+    size_t count = (size_t)node->part_texture_count;
     const Texture **moved = ARENA_ARRAY(move->arena, const Texture *, count);
     if (!moved)
         return false;
     for (size_t i = 0; i < count; i++) {
-        moved[i] = node->mesh_textures[i];
+        moved[i] = node->part_textures[i];
         if (!move_texture(move, &moved[i]))
             return false;
     }
-    node->mesh_textures = moved;
+    node->part_textures = moved;
     return true;
 }
 
@@ -119,7 +119,7 @@ static bool move_node(Move *move, Node *node)
     if (node->light)
         move_light(node->light, move->xform);
     return move_texture(move, &node->texture) && move_texture(move, &node->inner_texture) &&
-           move_interior(move, &node->interior) && move_mesh_textures(move, node) &&
+           move_interior(move, &node->interior) && move_part_textures(move, node) &&
            move_list(move, node->children, node->child_count) &&
            move_list(move, node->clips, node->clip_count) &&
            move_list(move, node->bounds, node->bound_count);

@@ -43,11 +43,14 @@ struct Node {
     int clip_count, bound_count;
     Light *light;               /* of a NODE_LIGHT; its looks_like is its only child */
     const Texture *texture, *inner_texture;
-    const Texture *const *mesh_textures;
-    int mesh_texture_count;
+    const Texture *const *part_textures;
+    int part_texture_count;
     const Interior *interior;
     PhotonFlags photons;
     bool has_photons;           /* photons{} was written here */
+    bool is_uv;                 /* its textures see uv */
+    bool is_bare;               /* its texture is the default one */
+    bool is_cutaway;            /* of an intersection: cuts show the textures of what they cut */
     Tri hollow, double_illuminate;
     bool no_shadow, no_image, no_reflection, no_radiosity;
 };

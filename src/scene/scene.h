@@ -27,11 +27,19 @@ typedef struct PhotonFlags {
 #define PHOTON_FLAGS_DEFAULT ((PhotonFlags){.spacing_factor = 1, .is_collecting = true})
 
 /* How a leaf shape looks and behaves. */
+/* Leaves that lend their textures to cuts through them. */
+typedef struct Cutaway {
+    const Shape *const *solids;
+    const Texture *const *textures; /* of the solids */
+    int count;
+} Cutaway;
+
 typedef struct Surface {
     const Texture *texture;       /* never NULL after scene_check */
     const Texture *inner_texture; /* interior_texture, or NULL: as texture */
-    const Texture *const *mesh_textures; /* of a mesh or blob with its own, else NULL */
-    int mesh_texture_count;
+    const Texture *const *part_textures; /* that parts of it have: of a mesh or blob with its own,
+                                            of a cut; else NULL */
+    int part_texture_count;
     const Interior *interior;     /* never NULL after scene_check */
     PhotonFlags photons;
     bool no_shadow, no_image, no_reflection, no_radiosity;
@@ -44,6 +52,7 @@ typedef struct Surface {
     bool is_filter;               /* what passes goes straight on and loses what the pigment takes,
                                      nothing else: set by scene_check */
     bool is_target;               /* photons are sent at it: set by scene_check */
+    const Cutaway *cutaway;       /* what it shows of cut solids, or NULL */
     uint32_t object;              /* which top-level object it belongs to */
     Span span;                    /* of the object statement */
 } Surface;

@@ -11,8 +11,10 @@
 /* What a node hands down to its children. */
 typedef struct Looks {
     const Texture *texture, *inner_texture;
-    const Texture *const *mesh_textures;
-    int mesh_texture_count;
+    bool is_bare;           /* nobody gave a texture: it is the default one, or NULL */
+    const Cutaway *cutaway; /* what members without a texture show, or NULL */
+    const Texture *const *part_textures;
+    int part_texture_count;
     const Interior *interior;
     PhotonFlags photons;
     Tri hollow, double_illuminate;
@@ -53,8 +55,10 @@ const Texture *scene_build_default(SceneBuild *build)
 bool scene_build_add(SceneBuild *build, Node *node)
 {
     /* Children that have no texture either take it from here when the scene is finished. */
-    if (!node->texture && node->kind != NODE_LIGHT)
+    if (!node->texture && node->kind != NODE_LIGHT) {
         node->texture = scene_build_default(build);
+        node->is_bare = true;
+    }
     if (build->node_count == build->node_capacity) {
         size_t capacity = build->node_capacity ? build->node_capacity * 2 : 16;
         Node **grown = ARENA_ARRAY(build->arena, Node *, capacity);
@@ -122,8 +126,13 @@ static PhotonFlags photons_of(const Node *node, const PhotonFlags *parent)
 static Looks looks_of(const Node *node, const Looks *parent)
 {
     Looks looks = *parent;
-    if (node->texture)
+    if (node->texture) {
         looks.texture = node->texture;
+        looks.is_bare = node->is_bare;
+    }
+    /* A union that was turned inside out is an intersection. */
+    if (node->kind == NODE_CSG && (node->csg == SHAPE_INTERSECTION) == node->is_inverted)
+        looks.cutaway = NULL;
     if (node->inner_texture)
         looks.inner_texture = node->inner_texture;
     if (node->interior)
@@ -133,8 +142,8 @@ static Looks looks_of(const Node *node, const Looks *parent)
         looks.hollow = node->hollow;
     if (looks.double_illuminate != TRI_ON && node->double_illuminate != TRI_UNSET)
         looks.double_illuminate = node->double_illuminate;
-    looks.mesh_textures = node->mesh_textures;
-    looks.mesh_texture_count = node->mesh_texture_count;
+    looks.part_textures = node->part_textures;
+    looks.part_texture_count = node->part_texture_count;
     looks.no_shadow |= node->no_shadow;
     looks.no_image |= node->no_image;
     looks.no_reflection |= node->no_reflection;
@@ -191,8 +200,9 @@ static uint32_t add_surface(Finisher *f, const Node *node, const Looks *looks)
     scene->surfaces[scene->surface_count] = (Surface){
         .texture = texture,
         .inner_texture = looks->inner_texture,
-        .mesh_textures = looks->mesh_textures,
-        .mesh_texture_count = looks->mesh_texture_count,
+        .part_textures = looks->part_textures,
+        .part_texture_count = looks->part_texture_count,
+        .cutaway = looks->is_bare && !looks->part_textures ? looks->cutaway : NULL,
         .interior = looks->hollow == TRI_ON ? hollow_of(f, interior) : interior,
         .photons = looks->photons,
         .no_shadow = looks->no_shadow,
@@ -268,11 +278,66 @@ static bool build_csg(Finisher *f, const Node *node, const Looks *looks, Shape *
     return true;
 }
 
+/* A list of what a cut may show, while it is filled. */
+typedef struct CutawayDraft {
+    const Shape **solids;
+    const Texture **textures;
+    int count;
+} CutawayDraft;
+
+/* List the leaves of a node that have a texture; of a difference what is cut, not the cutters. */
+static void list_solids(const Finisher *f, const Node *node, Looks looks, CutawayDraft *draft)
+{
+    looks = looks_of(node, &looks);
+    if (node->kind == NODE_LEAF && !(looks.is_bare && looks.cutaway)) {
+        draft->solids[draft->count] = node->shape;
+        draft->textures[draft->count++] = looks.texture ? looks.texture : f->default_texture;
+    }
+    for (int i = 0; i < node->child_count; i++) {
+        if (node->children[i]->kind == NODE_LIGHT)
+            continue;
+        list_solids(f, node->children[i], looks, draft);
+        if (node->is_difference)
+            return;
+    }
+}
+
+/* Make the node, and then the list of what cuts through it show. */
+static bool build_cutaway(Finisher *f, const Node *node, Looks looks, Shape **out)
+{
+    Scene *scene = f->scene;
+    uint32_t first = scene->surface_count;
+    size_t most = f->is_counting ? 0 : (size_t)node->size;
+    CutawayDraft draft = {ARENA_ARRAY(scene->arena, const Shape *, most),
+                          ARENA_ARRAY(scene->arena, const Texture *, most), 0};
+    Cutaway *cutaway = ARENA_NEW(scene->arena, Cutaway);
+    if (!draft.solids || !draft.textures || !cutaway)
+        return fail_memory(f);
+    looks.cutaway = cutaway;
+    if (!build_csg(f, node, &looks, out) || f->is_counting)
+        return f->is_counting;
+    for (int i = 0; i < node->child_count && (i == 0 || !node->is_difference); i++)
+        if (node->children[i]->kind != NODE_LIGHT)
+            list_solids(f, node->children[i], looks, &draft);
+    *cutaway = (Cutaway){draft.solids, draft.textures, draft.count};
+    for (uint32_t i = first; i < scene->surface_count; i++) {
+        Surface *surface = &scene->surfaces[i];
+        if (surface->cutaway == cutaway) {
+            surface->part_textures = draft.textures;
+            surface->part_texture_count = draft.count;
+        }
+    }
+    return true;
+}
+
 static bool build_shape(Finisher *f, const Node *node, const Looks *parent, Shape **out)
 {
     Looks looks = looks_of(node, parent);
     uint32_t surface = f->scene->surface_count;
-    if (node->kind == NODE_CSG) {
+    if (node->kind == NODE_CSG && node->is_cutaway && looks.is_bare && !looks.cutaway) {
+        if (!build_cutaway(f, node, looks, out))
+            return false;
+    } else if (node->kind == NODE_CSG) {
         if (!build_csg(f, node, &looks, out))
             return false;
     } else {
@@ -320,7 +385,7 @@ static void add_object(Finisher *f, const Node *node, const Looks *parent)
 
 static Looks no_looks(void)
 {
-    return (Looks){.photons = PHOTON_FLAGS_DEFAULT, .bound = BOUND_ALL};
+    return (Looks){.photons = PHOTON_FLAGS_DEFAULT, .bound = BOUND_ALL, .is_bare = true};
 }
 
 static void add_top(Finisher *f, const Node *node, const Looks *parent);

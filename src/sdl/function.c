@@ -247,11 +247,6 @@ static int missing_call(FunctionReader *r, const Value *value)
     return constant(r, 0);
 }
 
-static const char *plural(int count)
-{
-    return count == 1 ? "" : "s";
-}
-
 static int function_call(FunctionReader *r, const Value *value, Span name)
 {
     if (!value->node)

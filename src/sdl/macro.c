@@ -61,11 +61,6 @@ static Argument *argument_push(Parser *p)
     return &p->arguments[p->argument_count++];
 }
 
-static const char *plural(int count)
-{
-    return count == 1 ? "" : "s";
-}
-
 static void take_arguments(Parser *p, const Macro *macro, Span call)
 {
     for (int i = 0; i < macro->parameter_count; i++) {

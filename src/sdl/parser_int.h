@@ -162,6 +162,8 @@ struct Parser {
 /* --- parse_fail.c ----------------------------------------------------------------------------- */
 
 noreturn void parse_fail_memory(Parser *p);
+/* Return what a word in a message ends in for so many. */
+static inline const char *plural(int count) { return count == 1 ? "" : "s"; }
 /* Fail on a word nobody knows: "unknown `what` ...; did you mean ...?" */
 noreturn void parse_fail_unknown(Parser *p, const Token *token, const char *what);
 /* Return the word of the scene or the language nearest to this one, or NULL. */

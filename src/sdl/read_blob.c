@@ -169,8 +169,8 @@ Node *read_blob(Parser *p)
     Node *node = read_leaf(p, shape_blob(parse_arena(p), d.threshold, d.components,
                                          (uint32_t)d.count, d.has_textures));
     if (d.has_textures) {
-        node->mesh_textures = (const Texture *const *)d.textures;
-        node->mesh_texture_count = (int)d.texture_count;
+        node->part_textures = (const Texture *const *)d.textures;
+        node->part_texture_count = (int)d.texture_count;
     }
     return node;
 }

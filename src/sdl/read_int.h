@@ -129,6 +129,10 @@ bool read_triangle_is_flat(const V3 corner[3]);
 const Pigment *read_pigment(Parser *p, const Pigment *base);
 const Finish *read_finish(Parser *p, const Finish *base);
 const Texture *read_texture(Parser *p);
+
+/* Return a pigment or texture that sees uv. */
+const Pigment *read_as_uv(Parser *p, const Pigment *pigment);
+const Texture *read_texture_as_uv(Parser *p, const Texture *texture);
 const Interior *read_interior(Parser *p, const Interior *base_or_null);
 const Material *read_material(Parser *p);
 

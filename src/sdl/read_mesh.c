@@ -348,8 +348,8 @@ static Node *finish_mesh(Parser *p, MeshDraft *d, Span span)
         m->textures = NULL;
     Node *node = read_mesh_leaf(p, m);
     if (d->has_texture) {
-        node->mesh_textures = (const Texture *const *)d->textures;
-        node->mesh_texture_count = (int)d->texture_count;
+        node->part_textures = (const Texture *const *)d->textures;
+        node->part_texture_count = (int)d->texture_count;
     }
     return node;
 }

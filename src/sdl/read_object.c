@@ -139,7 +139,8 @@ static void read_interior_texture(Parser *p, Node *node)
     node->inner_texture = read_layers(p, node->inner_texture, read_texture(p));
 }
 
-bool read_look(Parser *p, Node *node)
+/* Read a look; returns false if none comes next. */
+static bool read_plain_look(Parser *p, Node *node)
 {
     switch (parse_peek(p)->kind) {
     case KW_TEXTURE:
@@ -169,6 +170,37 @@ bool read_look(Parser *p, Node *node)
     default:
         return false;
     }
+}
+
+static void read_cutaway_textures(Parser *p, Node *node)
+{
+    Token word = parse_next(p);
+    if (node->kind != NODE_CSG || node->csg != SHAPE_INTERSECTION)
+        parse_fail(p, word.span, "cutaway_textures fits an intersection or difference only");
+    node->is_cutaway = true;
+}
+
+static void read_uv_mapping(Parser *p, Node *node)
+{
+    Token word = parse_next(p);
+    if (node->texture)
+        parse_fail(p, word.span, "uv_mapping wants to stand before the texture");
+    node->is_uv = true;
+}
+
+bool read_look(Parser *p, Node *node)
+{
+    if (parse_peek(p)->kind == KW_UV_MAPPING) {
+        read_uv_mapping(p, node);
+        return true;
+    }
+    if (!read_plain_look(p, node))
+        return false;
+    if (node->is_uv && node->texture)
+        node->texture = read_texture_as_uv(p, node->texture);
+    if (node->is_uv && node->inner_texture)
+        node->inner_texture = read_texture_as_uv(p, node->inner_texture);
+    return true;
 }
 
 static Tri read_tri(Parser *p)
@@ -242,6 +274,9 @@ static bool read_behaviour(Parser *p, Node *node)
         return true;
     case KW_RADIOSITY:
         read_object_radiosity(p);
+        return true;
+    case KW_CUTAWAY_TEXTURES:
+        read_cutaway_textures(p, node);
         return true;
     case KW_PHOTONS:
         read_object_photons(p, &node->photons);

@@ -221,9 +221,28 @@ void read_pigment_modifier(Parser *p, Pigment *pigment)
     }
 }
 
+/* Does the pigment, or one of its list, see uv? */
+static bool sees_uv(const Pigment *pigment)
+{
+    bool has_uv = pigment->is_uv;
+    for (int i = 0; i < pigment->list_count; i++)
+        has_uv |= pigment->list[i]->has_uv;
+    return has_uv;
+}
+
+const Pigment *read_as_uv(Parser *p, const Pigment *pigment)
+{
+    if (pigment->is_solid || pigment->is_uv)
+        return pigment;
+    Pigment *mapped = parse_copy(p, pigment, sizeof *pigment);
+    mapped->is_uv = mapped->has_uv = true;
+    return mapped;
+}
+
 const Pigment *read_pigment(Parser *p, const Pigment *base)
 {
     Token word = read_open(p);
+    bool is_uv = parse_accept(p, KW_UV_MAPPING); /* transforms in the block come before it */
     Pigment pigment = *base;
     pigment.span = word.span;
     const Value *value = parse_accept_value(p, VALUE_PIGMENT);
@@ -234,5 +253,7 @@ const Pigment *read_pigment(Parser *p, const Pigment *base)
         parse_warn(p, WARN_LANGUAGE, word.span, "the pigment is empty");
     while (!read_close(p))
         read_pigment_modifier(p, &pigment);
-    return parse_copy(p, &pigment, sizeof pigment);
+    pigment.has_uv = sees_uv(&pigment);
+    const Pigment *kept = parse_copy(p, &pigment, sizeof pigment);
+    return is_uv ? read_as_uv(p, kept) : kept;
 }

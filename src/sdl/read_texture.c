@@ -29,10 +29,25 @@ const Texture *read_with_finish(Parser *p, const Texture *texture, const Finish 
     return with_top(p, texture, (Layer){top_of(texture).pigment, finish});
 }
 
+const Texture *read_texture_as_uv(Parser *p, const Texture *texture)
+{
+    size_t count = (size_t)texture->layer_count;
+    Layer *layers = parse_copy(p, texture->layers, count * sizeof *layers);
+    for (size_t i = 0; i < count; i++)
+        layers[i].pigment = read_as_uv(p, layers[i].pigment);
+    Texture *mapped = parse_copy(p, texture, sizeof *texture);
+    mapped->layers = layers;
+    return mapped;
+}
+
 const Texture *read_layers(Parser *p, const Texture *under, const Texture *over)
 {
     if (!under)
         return over;
+    if (over->is_uv)
+        parse_fail(p, over->span,
+                   "a texture with uv_mapping may lie on no other: give it to the "
+                   "pigment, or to the object");
     size_t lower = (size_t)under->layer_count, upper = (size_t)over->layer_count;
     if (lower + upper > TEXTURE_LAYERS_MAX)
         parse_fail(p, over->span, "a texture of %d layers (limit %d)", (int)(lower + upper),
@@ -94,12 +109,14 @@ static void read_texture_item(Parser *p, const Texture **texture)
 const Texture *read_texture(Parser *p)
 {
     Token word = read_open(p);
+    bool is_uv = parse_accept(p, KW_UV_MAPPING);
     const Value *value = parse_accept_value(p, VALUE_TEXTURE);
     const Texture *base = value ? value->node : read_default_texture(p);
     Texture *own = parse_copy(p, base, sizeof *base);
     own->span = word.span;
+    own->is_uv |= is_uv;
     const Texture *texture = own;
     while (!read_close(p))
         read_texture_item(p, &texture);
-    return texture;
+    return is_uv ? read_texture_as_uv(p, texture) : texture;
 }

@@ -32,8 +32,15 @@ Color5 pigment_map_color(const Pigment *pigment, double value)
 
 Color5 pigment_at(const Pigment *pigment, V3 p)
 {
+    return pigment_at_uv(pigment, p, (V2){p.x, p.y});
+}
+
+Color5 pigment_at_uv(const Pigment *pigment, V3 p, V2 uv)
+{
     /* Lists nest: walk down without recursion. */
     while (!pigment->is_solid) {
+        if (pigment->is_uv)
+            p = v3(uv.u, uv.v, 0);
         double v = pattern_value(&pigment->pattern, p);
         if (!pigment->list)
             return map_color(pigment->map, pigment->map_count, v);
@@ -46,7 +53,7 @@ Color5 pigment_at(const Pigment *pigment, V3 p)
 
 const Pigment *pigment_transform(Arena *arena, const Pigment *pigment, const Xform *xform)
 {
-    if (pigment->is_solid || xform_is_identity(xform))
+    if (pigment->is_solid || pigment->is_uv || xform_is_identity(xform))
         return pigment;
     Pigment *moved = arena_copy(arena, pigment, sizeof *pigment);
     if (!moved)

@@ -31,6 +31,14 @@ bool texture_may_transmit(const Texture *texture)
     return true;
 }
 
+bool texture_has_uv(const Texture *texture)
+{
+    for (int i = 0; i < texture->layer_count; i++)
+        if (texture->layers[i].pigment->has_uv)
+            return true;
+    return false;
+}
+
 static bool is_black(const Layer *layer)
 {
     const Pigment *pigment = layer->pigment;

@@ -62,6 +62,8 @@ typedef struct Pigment Pigment;
 struct Pigment {
     Span span;
     bool is_solid;                /* color alone */
+    bool is_uv;                   /* it sees uv instead of places, and no transform moves it */
+    bool has_uv;                  /* it, or one of its list, is such */
     Color5 color;
     Pattern pattern;
     const MapEntry *map;          /* color_map, in written order; NULL for a list */
@@ -110,6 +112,7 @@ typedef struct Texture {
     Span span;
     const Layer *layers;
     int layer_count; /* at least 1 */
+    bool is_uv;      /* uv_mapping stands in its block: it may lie on no other */
 } Texture;
 
 typedef struct Medium Medium; /* texture/media.h */
@@ -145,6 +148,12 @@ typedef struct Interior {
 /* Return the pigment's colour at a world point.  Pigments in a list are evaluated at the point
  * the outer pattern sees.  Never fails.  Any thread. */
 Color5 pigment_at(const Pigment *pigment, V3 p);
+
+/* The same where the surface has these uv; pigment_at takes the x and y of p. */
+Color5 pigment_at_uv(const Pigment *pigment, V3 p, V2 uv);
+
+/* Return true if some pigment of the texture depends on uv. */
+bool texture_has_uv(const Texture *texture);
 
 /* Return the colour of a pigment's color_map for a value of its pattern. */
 Color5 pigment_map_color(const Pigment *pigment, double value);

@@ -165,11 +165,12 @@ static bool is_solid_texture(const Texture *texture)
 }
 
 /* Return what passes a texture at a point. */
-static Rgb texture_filter(const Texture *texture, const Interior *interior, V3 p, double cosine)
+static Rgb texture_filter(const Texture *texture, const Interior *interior, V3 p, V2 uv,
+                          double cosine)
 {
     Rgb filter = RGB_WHITE;
     for (int i = 0; i < texture->layer_count; i++) {
-        filter = rgb_mul(filter, color5_through(pigment_at(texture->layers[i].pigment, p)));
+        filter = rgb_mul(filter, color5_through(pigment_at_uv(texture->layers[i].pigment, p, uv)));
         if (interior->caustics != 0)
             filter =
                 rgb_scale(filter, (float)(1 + pow(fabs(cosine), 45 * (double)interior->caustics)));
@@ -194,9 +195,9 @@ static Rgb crossing_filter(const ShadowQuery *query, const Crossing *crossing, c
     if (!plan_filters_shadow(query->tracer->plan, surface) || is_blocking_target(query, surface))
         return RGB_BLACK;
     /* The point is needed only if something depends on it. */
-    if (!surface->mesh_textures && !surface->inner_texture && interior->caustics == 0 &&
+    if (!surface->part_textures && !surface->inner_texture && interior->caustics == 0 &&
         is_solid_texture(surface->texture))
-        return texture_filter(surface->texture, interior, v3(0, 0, 0), 0);
+        return texture_filter(surface->texture, interior, v3(0, 0, 0), (V2){0, 0}, 0);
 
     ShapePoint point;
     shape_point(crossing, ray, &point);
@@ -204,10 +205,10 @@ static Rgb crossing_filter(const ShadowQuery *query, const Crossing *crossing, c
     texture_choose(surface, crossing->leaf, crossing->part, crossing->u, crossing->v, point.p,
                    v3_dot(point.ng, ray->d) > 0, &choice);
     Rgb sum = RGB_BLACK;
+    double cosine = v3_dot(point.ns, ray->d);
     for (int i = 0; i < choice.count; i++)
-        sum =
-            rgb_mad(sum, choice.weight[i],
-                    texture_filter(choice.texture[i], interior, point.p, v3_dot(point.ns, ray->d)));
+        sum = rgb_mad(sum, choice.weight[i],
+                      texture_filter(choice.texture[i], interior, point.p, choice.uv, cosine));
     return sum;
 }
 

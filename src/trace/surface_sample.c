@@ -129,9 +129,12 @@ static float opacity_of(const SceneSettings *settings, Color5 c)
     return 1 - filter - c.transmit;
 }
 
-/* Append the layers of one texture, seen through `above`; returns what passes them too. */
-static Rgb sample_texture(Sampling *s, const Texture *texture, float weight, Rgb above)
+/* Append the layers of texture k of a choice, seen through `above`; returns what passes them too.
+ */
+static Rgb sample_texture(Sampling *s, const TextureChoice *choice, int k, Rgb above)
 {
+    const Texture *texture = choice->texture[k];
+    float weight = choice->weight[k];
     SurfaceSample *out = s->out;
     float bailout = (float)out->settings->adc_bailout;
     Rgb filter = above;
@@ -139,7 +142,7 @@ static Rgb sample_texture(Sampling *s, const Texture *texture, float weight, Rgb
         if (!(fabsf(rgb_grey(filter)) > bailout))
             break;
         SurfaceLayer *layer = &out->layers[out->layer_count++];
-        Color5 color = pigment_at(texture->layers[i].pigment, out->at.p);
+        Color5 color = pigment_at_uv(texture->layers[i].pigment, out->at.p, choice->uv);
         layer->color = color5_rgb(color);
         layer->opacity = opacity_of(out->settings, color);
         layer->above = rgb_scale(filter, weight);
@@ -179,7 +182,7 @@ static void sample_surface(Sampling *s, const TextureChoice *choice)
 {
     Rgb sum = RGB_BLACK, above = s->out->filter;
     for (int i = 0; i < choice->count; i++)
-        sum = rgb_add(sum, sample_texture(s, choice->texture[i], choice->weight[i], above));
+        sum = rgb_add(sum, sample_texture(s, choice, i, above));
     s->out->filter = sum;
 }
 

@@ -75,6 +75,7 @@ typedef struct TextureChoice {
     const Texture *texture[SHAPE_BLEND_MAX];
     float weight[SHAPE_BLEND_MAX]; /* add up to 1 */
     int count;
+    V2 uv; /* of the point, if one of them depends on that */
 } TextureChoice;
 
 /* Choose the texture of a surface point.

@@ -203,6 +203,73 @@ static void test_plain_triangles_are_scanned(void **state)
     scene_free(scene);
 }
 
+static void test_uv_mapping_marks_pigments(void **state)
+{
+    (void)state;
+    Scene *scene = scene_of(
+        "#declare C = pigment { checker scale 1/8 }\n"
+        "sphere { 0, 1 uv_mapping texture { pigment { C } } texture { pigment { C } } scale 2 }\n"
+        "sphere { 0, 1 texture { pigment { uv_mapping C scale 2 } scale 2 } }\n"
+        "sphere { 0, 1 texture { uv_mapping pigment { C } scale 2 } scale 5 }\n"
+        "union { sphere { 0, 1 } sphere { x, 1 pigment { C } } uv_mapping pigment { C } }\n");
+    static const double scale[5] = {0.125, 0.25, 0.25, 0.125, 0.125};
+    for (uint32_t i = 0; i < 5; i++) {
+        const Texture *texture = scene->surfaces[i].texture;
+        const Pigment *pigment = texture->layers[texture->layer_count - 1].pigment;
+        assert_int_equal(texture_has_uv(texture), i != 4);
+        assert_int_equal(pigment->is_uv, i != 4);
+        assert_true(is_near(pigment->pattern.xform.to[0][0], scale[i]));
+    }
+    assert_true(scene->surfaces[0].texture->layers[0].pigment->is_uv);
+    scene_free(scene);
+}
+
+/* Does a surface show so much red and green at p, the mean of what it shows there? */
+static bool shows(const Surface *surface, V3 p, double red, double green)
+{
+    double count = 0, sum[2] = {0, 0};
+    for (int i = 0; surface->cutaway && i < surface->cutaway->count; i++) {
+        if (!shape_is_inside(surface->cutaway->solids[i], p))
+            continue;
+        Color5 c = surface->cutaway->textures[i]->layers[0].pigment->color;
+        sum[0] += (double)c.r;
+        sum[1] += (double)c.g;
+        count++;
+    }
+    if (count == 0) {
+        Color5 c = surface->texture->layers[0].pigment->color;
+        return is_near((double)c.r, red) && is_near((double)c.g, green);
+    }
+    return is_near(sum[0] / count, red) && is_near(sum[1] / count, green);
+}
+
+/* Cutters without a texture show what they cut, wherever they are in the tree. */
+static void test_cutaway_shows_what_is_cut(void **state)
+{
+    (void)state;
+    Scene *scene = scene_of(
+        "#default { pigment { rgb <0, 0, 1> } }\n"
+        "#declare Pair = union { sphere { -x/2, 1 pigment { rgb x } } sphere { x/2, 1 } }\n"
+        "difference { object { Pair pigment { rgb y } } box { -1, 0 } "
+        "  union { box { 0, 1 } box { 1, 2 pigment { rgb <1, 1, 0> } } } cutaway_textures }\n"
+        "union { difference { sphere { 0, 1 pigment { rgb x } } box { 0, 1 } cutaway_textures }"
+        "  sphere { 5, 1 } pigment { rgb y } }\n"
+        "difference { sphere { 0, 1 pigment { rgb x } } box { 0, 1 } }\n");
+    const Surface *s = scene->surfaces;
+    assert_int_equal(scene->surface_count, 10);
+    assert_true(shows(&s[0], v3(1.2, 0, 0), 1, 0)); /* a sphere of its own texture */
+    for (int i = 2; i < 4; i++) {                   /* boxes that cut */
+        assert_true(shows(&s[i], v3(-1.2, 0, 0), 1, 0));
+        assert_true(shows(&s[i], v3(1.2, 0, 0), 0, 1));
+        assert_true(shows(&s[i], v3(0, 0, 0), 0.5, 0.5));
+        assert_true(shows(&s[i], v3(9, 0, 0), 0, 0)); /* nothing is there: the default */
+    }
+    assert_true(shows(&s[4], v3(0, 0, 0), 1, 1)); /* one with a texture */
+    assert_true(shows(&s[6], v3(0, 0, 0), 0, 1)); /* one that gets the union's */
+    assert_true(shows(&s[9], v3(0, 0, 0), 0, 0)); /* one without cutaway_textures */
+    scene_free(scene);
+}
+
 static void test_instances_share_their_mesh(void **state)
 {
     (void)state;
@@ -223,8 +290,8 @@ static void test_mesh_textures_are_listed_once(void **state)
                             "  texture_list { 2, texture { A } texture { B } }\n"
                             "  face_indices { 3, <0, 1, 2>, 1, <0, 1, 2>, 0, 1, 1 <0, 1, 2> } }");
     const Surface *s = &scene->surfaces[0];
-    assert_int_equal(s->mesh_texture_count, 2);
-    assert_true(s->mesh_textures[1]->layers[0].pigment->color.g == 1);
+    assert_int_equal(s->part_texture_count, 2);
+    assert_true(s->part_textures[1]->layers[0].pigment->color.g == 1);
     const uint32_t expected[9] = {
         1, 1, 1, 0, 1, 1, MESH_NO_TEXTURE, MESH_NO_TEXTURE, MESH_NO_TEXTURE};
     assert_memory_equal(scene->meshes[0]->textures, expected, sizeof expected);
@@ -567,6 +634,8 @@ int main(void)
         cmocka_unit_test(test_names_reach_the_scene),
         cmocka_unit_test(test_mesh_and_mesh2_give_the_same_triangles),
         cmocka_unit_test(test_plain_triangles_are_scanned),
+        cmocka_unit_test(test_uv_mapping_marks_pigments),
+        cmocka_unit_test(test_cutaway_shows_what_is_cut),
         cmocka_unit_test(test_instances_share_their_mesh),
         cmocka_unit_test(test_mesh_textures_are_listed_once),
         cmocka_unit_test(test_layers_lie_in_written_order),

@@ -418,7 +418,7 @@ static void test_mesh_textures(void **state)
     assert_int_equal(mesh_index(&w.diag, &mesh, 1), OK);
     const Texture *list[2] = {emitter(&w, 1, 0, 0), emitter(&w, 0, 1, 0)};
     Surface *surface = world_add(&w, shape_mesh(arena, &mesh), emitter(&w, 0, 0, 1), &air);
-    surface->mesh_textures = list;
+    surface->part_textures = list;
     world_ready(&w);
     /* barycentrics of corner 2, the green one: (y+1)/2 */
     Interiors inside = {.count = 0};
@@ -428,6 +428,32 @@ static void test_mesh_textures(void **state)
     check_rgb(look_along(&w, &ray, RAY_CAMERA, &inside, 0, 1, false), 0, 0, 1);
     world_done(&w);
     mesh_done(&mesh);
+}
+
+/* A cut shows the mean of the solids around the point, or its own texture where there is none. */
+static void test_cutaway(void **state)
+{
+    (void)state;
+    World w;
+    world_init(&w);
+    Arena *arena = w.scene.arena;
+    const Shape *solids[2] = {shape_sphere(arena, v3(-1, 0, 0), 2),
+                              shape_sphere(arena, v3(1, 0, 0), 2)};
+    const Texture *list[2] = {emitter(&w, 1, 0, 0), emitter(&w, 0, 1, 0)};
+    const Cutaway cutaway = {solids, list, 2};
+    Surface *surface =
+        world_add(&w, box(&w, v3(-9, -9, 0), v3(9, 9, 1)), emitter(&w, 0, 0, 1), &air);
+    surface->part_textures = list;
+    surface->cutaway = &cutaway;
+    world_ready(&w);
+    Interiors inside = {.count = 0};
+    Ray ray = {{0, 0, -10}, {0, 0, 1}, 0, INFINITY};
+    check_rgb(look_along(&w, &ray, RAY_CAMERA, &inside, 0, 1, false), 0.5, 0.5, 0);
+    ray.o.x = -2;
+    check_rgb(look_along(&w, &ray, RAY_CAMERA, &inside, 0, 1, false), 1, 0, 0);
+    ray.o.x = 5;
+    check_rgb(look_along(&w, &ray, RAY_CAMERA, &inside, 0, 1, false), 0, 0, 1);
+    world_done(&w);
 }
 
 static void test_smooth_normal_at_a_silhouette(void **state)
@@ -475,6 +501,7 @@ int main(void)
         cmocka_unit_test(test_glass_on_a_table),
         cmocka_unit_test(test_interior_texture),
         cmocka_unit_test(test_mesh_textures),
+        cmocka_unit_test(test_cutaway),
         cmocka_unit_test(test_smooth_normal_at_a_silhouette),
     };
     return cmocka_run_group_tests_name("surface_sample", tests, NULL, NULL);

@@ -152,6 +152,38 @@ static void test_transform_without_memory(void **state)
     arena_free(arena);
 }
 
+/* A pigment that sees uv, alone or in a list, is moved by no transform. */
+static void test_uv(void **state)
+{
+    (void)state;
+    MapEntry map[2] = {{0, {0, 0, 0, 0, 0}}, {1, {1, 1, 1, 0, 0}}};
+    Pigment ramp = {.is_uv = true,
+                    .has_uv = true,
+                    .pattern = {.kind = PATTERN_GRADIENT,
+                                .direction = {0, 1, 0},
+                                .frequency = 1,
+                                .exponent = 1,
+                                .xform = XFORM_IDENTITY},
+                    .map = map,
+                    .map_count = 2};
+    V3 p = v3(0.5, 0.125, 0.5);
+    assert_true(is_near(pigment_at_uv(&ramp, p, (V2){0.25, 0.75}).r, 0.75));
+    assert_true(is_near(pigment_at(&ramp, p).r, 0.125));
+    Xform grow = xform_scale(v3(2, 2, 2));
+    Arena *arena = arena_new();
+    assert_ptr_equal(pigment_transform(arena, &ramp, &grow), &ramp);
+    arena_free(arena);
+    const Pigment *list[2] = {&ramp, &ramp};
+    Pigment checker = {.has_uv = true,
+                       .pattern = {.kind = PATTERN_CHECKER, .exponent = 1, .xform = XFORM_IDENTITY},
+                       .list = list,
+                       .list_count = 2};
+    assert_true(is_near(pigment_at_uv(&checker, p, (V2){0.25, 0.75}).r, 0.75));
+    Finish finish = FINISH_DEFAULT;
+    Layer layer = {&checker, &finish};
+    assert_true(texture_has_uv(&(Texture){.layers = &layer, .layer_count = 1}));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -161,6 +193,7 @@ int main(void)
         cmocka_unit_test(test_may_transmit),
         cmocka_unit_test(test_fade),
         cmocka_unit_test(test_transform_without_memory),
+        cmocka_unit_test(test_uv),
     };
     return cmocka_run_group_tests_name("texture", tests, NULL, NULL);
 }
