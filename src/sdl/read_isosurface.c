@@ -1,15 +1,12 @@
 /* isosurface { function { ... } ... }
  *
- * No max_gradient is needed.  One that is given is compared with slopes found near the surface,
- * since other programs would miss the surface where it is too small.
+ * No max_gradient is needed.  One that is given is compared with slopes in the cells that hold
+ * surface, since other programs would miss the surface where it is too small.
  * SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/parser_int.h"
 #include "sdl/read_int.h"
 
 #include <math.h>
-
-/* Points along each side of the container where slopes are looked at. */
-enum { SLOPE_POINTS = 24 };
 
 typedef struct IsosurfaceItems {
     const Func *func;
@@ -67,28 +64,10 @@ static bool read_item(Parser *p, IsosurfaceItems *items)
     return true;
 }
 
-/* Return the largest slope of the function at points of a grid whose cell may hold surface. */
-static double steepest(const IsosurfaceItems *items)
-{
-    const Bound box = shape_bound(items->container);
-    V3 cell = v3_scale(v3_sub(box.hi, box.lo), 1.0 / SLOPE_POINTS);
-    double most = 0, reach = v3_len(cell);
-    for (int i = 0; i < SLOPE_POINTS * SLOPE_POINTS * SLOPE_POINTS; i++) {
-        V3 at = v3(i % SLOPE_POINTS + 0.5, i / SLOPE_POINTS % SLOPE_POINTS + 0.5,
-                   (double)(i / (SLOPE_POINTS * SLOPE_POINTS)) + 0.5);
-        V3 p = v3_add(box.lo, v3_mul(at, cell)), gradient;
-        double value = func_gradient(items->func, (double[]){p.x, p.y, p.z}, &gradient);
-        double slope = v3_len(gradient);
-        if (isfinite(slope) && fabs(value - items->threshold) < slope * reach)
-            most = fmax(most, slope);
-    }
-    return most;
-}
-
 /* POV-Ray tells of what is off by a tenth. */
-static void check_gradient(Parser *p, const IsosurfaceItems *items)
+static void check_gradient(Parser *p, const IsosurfaceItems *items, const Shape *shape)
 {
-    double most = items->max_gradient > 0 ? steepest(items) : 0;
+    double most = items->max_gradient > 0 ? shape_isosurface_steepest(shape) : 0;
     if (most > 1.1 * items->max_gradient)
         parse_warn(p, WARN_GEOMETRY, items->gradient,
                    "max_gradient is %g, but the function has slopes of %.3g: programs that rely on "
@@ -106,7 +85,9 @@ Node *read_isosurface(Parser *p)
         parse_fail(p, first, "an isosurface wants a function");
     if (!items.container)
         items.container = parse_no_null(p, shape_box(parse_arena(p), v3(-1, -1, -1), v3(1, 1, 1)));
-    check_gradient(p, &items);
-    return read_leaf(p, shape_isosurface(parse_arena(p), items.func, items.threshold,
-                                         items.container, items.is_open));
+    const Shape *shape =
+        parse_no_null(p, shape_isosurface(parse_arena(p), items.func, items.threshold,
+                                          items.container, items.is_open));
+    check_gradient(p, &items, shape);
+    return read_leaf(p, shape);
 }

@@ -123,10 +123,13 @@ typedef struct TriangleParams {
     bool is_smooth;
 } TriangleParams;
 
+typedef struct IsoTree IsoTree; /* shape/iso_int.h */
+
 typedef struct IsosurfaceParams {
     const Func *func;       /* of x, y, z */
     const Shape *container; /* a box or sphere in the same space, not transformed */
     double threshold;       /* inside is func <= threshold */
+    const IsoTree *tree;
 } IsosurfaceParams;
 
 /* What is iterated: z -> f(z) + c. */
@@ -322,6 +325,10 @@ Shape *shape_sor(Arena *arena, const V2 *points, int count, bool is_open);
 Shape *shape_julia(Arena *arena, const JuliaForm *form); /* form is copied */
 Shape *shape_isosurface(Arena *arena, const Func *func, double threshold, const Shape *container,
                         bool is_open);
+
+/* Return the largest slope of an isosurface's function that was found where surface may be. */
+double shape_isosurface_steepest(const Shape *shape);
+
 
 /* The points that functions of u and v give for u from lo.u to hi.u, v from lo.v to hi.v, where
  * they are within a box or a sphere: a sheet without an inside.  container: not transformed. */

@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <cmocka.h>
 
-enum { FUNCTIONS = 1500, SAMPLES = 200, RAYS = 20000 };
+enum { FUNCTIONS = 400, SAMPLES = 200, RAYS = 20000 };
 
 static int square(FuncBuilder *b, int a)
 {
