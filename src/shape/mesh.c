@@ -152,6 +152,10 @@ static void mesh_point(const Shape *shape, const Crossing *crossing, V3 p, Local
     V3 ns = v3_mad(v3_mad(v3_scale(n[nc[0]], 1 - u - v), u, n[nc[1]]), v, n[nc[2]]);
     out->is_smooth = v3_len2(ns) > 0;
     out->ns = v3_unit(v3_dot(ns, out->ng) < 0 ? v3_neg(ns) : ns);
+    const V3 corner[3] = {a, mesh->vertices[c[1]], mesh->vertices[c[2]]};
+    const V3 normal[3] = {n[nc[0]], n[nc[1]], n[nc[2]]};
+    const double weight[3] = {1 - u - v, u, v};
+    out->lift = triangle_lift(out->p, corner, normal, weight);
 }
 
 static V2 mesh_uv(const Shape *shape, uint32_t triangle, double u, double v, V3 p)

@@ -302,6 +302,8 @@ static void to_world(const Shape *leaf, const LocalPoint *local, ShapePoint *out
     out->p = leaf->is_transformed ? xform_point(&leaf->xform, local->p) : local->p;
     out->ng = local->ng;
     out->ns = local->is_smooth ? local->ns : local->ng;
+    out->lift = leaf->is_transformed && local->is_smooth ? xform_dir(&leaf->xform, local->lift)
+                                                         : local->lift;
     if (leaf->rounding.is_exact) {
         double scale = leaf->xform.to[0][0];
         out->p_error = 2 * scale * local->error + 8 * EPS_DOUBLE * v3_sum_abs(out->p);

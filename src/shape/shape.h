@@ -393,6 +393,8 @@ typedef struct ShapePoint {
     V3 p;
     double p_error;
     V3 ng, ns;
+    V3 lift;         /* of smooth triangles: from p to about the curved surface that they stand for;
+                        else 0 */
     bool has_inside; /* the surface is a solid's: ng tells its sides apart.  Those of triangles
                         beside each other may point either way. */
 } ShapePoint;

@@ -39,9 +39,22 @@ typedef struct LeafHits {
 typedef struct LocalPoint {
     V3 p, ng;     /* ng: outward, unit */
     V3 ns;        /* if is_smooth: interpolated, unit, on the side of ng */
+    V3 lift;      /* see ShapePoint */
     double error; /* bound on the distance from the surface, rounding of p alone */
     bool is_smooth;
 } LocalPoint;
+
+/* Return the lift of a point of a triangle: on the planes through its corners, square to their
+ * normals, p has three places, of which the mean counts.  weight: of the corners at p. */
+static inline V3 triangle_lift(V3 p, const V3 corner[3], const V3 normal[3], const double weight[3])
+{
+    V3 lift = v3(0, 0, 0);
+    for (int i = 0; i < 3; i++) {
+        double below = v3_dot(v3_sub(corner[i], p), normal[i]);
+        lift = v3_mad(lift, weight[i] * below, normal[i]);
+    }
+    return lift;
+}
 
 typedef struct Line Line;
 

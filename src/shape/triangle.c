@@ -47,6 +47,8 @@ static void triangle_point(const Shape *shape, const Crossing *crossing, V3 p, L
     n = v3_unit(n);
     out->is_smooth = v3_len2(n) > 0;
     out->ns = v3_dot(n, out->ng) < 0 ? v3_neg(n) : n;
+    const double weight[3] = {1 - u - v, u, v};
+    out->lift = triangle_lift(out->p, t->corner, t->normal, weight);
 }
 
 static Bound triangle_bound(const Shape *shape)

@@ -234,3 +234,14 @@ Ray trace_ray_from(const ShapePoint *point, V3 d)
     double push = copysign(PUSH * point->p_error, v3_dot(d, point->ng));
     return (Ray){v3_mad(point->p, push, point->ng), d, 0, INFINITY};
 }
+
+bool trace_lifted_from(const ShapePoint *point, V3 d, Ray *out)
+{
+    double shown = v3_dot(d, point->ns);
+    if (!(shown * v3_dot(d, point->ng) < 0) || !(shown * v3_dot(point->lift, point->ns) > 0))
+        return false;
+    V3 start =
+        v3_mad(v3_add(point->p, point->lift), copysign(PUSH * point->p_error, shown), point->ns);
+    *out = (Ray){start, d, 0, INFINITY};
+    return true;
+}

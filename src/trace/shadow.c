@@ -366,7 +366,10 @@ static Rgb pass_filters(ShadowQuery *query, const Ray *ray)
 Rgb trace_shadow_of(TraceThread *thread, const ShadowBundle *bundle, const ShapePoint *from, V3 to,
                     double distance, int light, bool blocks_targets)
 {
-    Ray ray = trace_ray_from(from, to);
+    Ray ray;
+    bool is_lifted = trace_lifted_from(from, to, &ray);
+    if (!is_lifted)
+        ray = trace_ray_from(from, to);
     ray.tmax = distance - distance * LIGHT_SLACK - 8 * from->p_error;
     if (!(ray.tmax > 0))
         return RGB_WHITE;
@@ -383,8 +386,9 @@ Rgb trace_shadow_of(TraceThread *thread, const ShadowBundle *bundle, const Shape
     query.capacity = FILTERS_FEW;
     query.filters = query.few;
     if (is_still_blocked(&query, &ray, light) ||
-        (bundle && bundle->count >= 0 ? find_in_bundle(&query, &ray, bundle)
-                                      : find_blocker(&query, &ray, light, from->p_error))) {
+        (bundle && bundle->count >= 0
+             ? find_in_bundle(&query, &ray, bundle)
+             : find_blocker(&query, &ray, is_lifted ? -1 : light, from->p_error))) {
         if (light >= 0)
             thread->blockers[light] = query.blocker;
         return RGB_BLACK;

@@ -176,6 +176,9 @@ void trace_shadow_bundle(const Tracer *tracer, const ShapePoint *from, V3 to_cen
     double above = fabs(v3_dot(to_center, from->ng));
     if (!(above > radius))
         return;
+    double shown = v3_dot(to_center, from->ns), facet = v3_dot(to_center, from->ng);
+    if (v3_len2(from->lift) > 0 && !(shown * facet > 0 && fabs(shown) > radius))
+        return;
     Hull hull;
     V3 apex = trace_ray_from(from, to_center).o;
     if (!hull_init(&hull, apex, 16 * from->p_error, v3_add(from->p, to_center), radius))

@@ -92,6 +92,10 @@ bool tracer_is_opaque_solid(const Tracer *tracer, uint32_t object);
  * to the side d points to, by more than the point's error bound; (0, infinity). */
 Ray trace_ray_from(const ShapePoint *point, V3 d);
 
+/* Return true if a facet is turned away from direction d and the curved surface that it stands for
+ * is not: a shadow ray then starts at that, or its neighbours would draw the facets in shadows. */
+bool trace_lifted_from(const ShapePoint *point, V3 d, Ray *out);
+
 /* The interiors a ray is inside of.  The last is what it is in: of those with the highest priority
  * the one entered last. */
 enum { INTERIORS_MAX = 32 };

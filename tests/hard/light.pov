@@ -83,4 +83,25 @@ global_settings { assumed_gamma 1 max_trace_level 60 adc_bailout 1e-5 }
   box { <(Sound ? -1 : 0), -1.1, 1>, <0, 1.5, 2> translate (Sound ? 0 : -x) scale <1, 1, 1> pigment { rgb 1 } finish { ambient 0.1 diffuse 0.8 } }
   #if (!Sound) box { <-1, -1.1, 1>, <0, 1.5, 2> pigment { rgb 1 } finish { ambient 0.1 diffuse 0.8 } } #end
 #break
+#case (11) // the border of light and shadow on a ball of 528 smooth triangles; 60
+  Camera_In(Eye) light_source { <7.1, 2.3, 3.2>, rgb 1.5 } light_source { <-6.1, -0.3, 1.2>, rgb <0.5, 1, 2> }
+  #declare Rows = 12; #declare Columns = 24;
+  #macro Corner (I, J) vrotate(vrotate(0.9*y, x*180*I/Rows), y*360*J/Columns) #end
+  mesh {
+    #declare I = 0;
+    #while (I < Rows)
+      #declare J = 0;
+      #while (J < Columns)
+        #declare A = Corner(I, J); #declare B = Corner(I + 1, J); #declare C = Corner(I + 1, J + 1); #declare D = Corner(I, J + 1);
+        #if (I > 0) smooth_triangle { A, A, B, B, D, D } #end
+        #if (I < Rows - 1) smooth_triangle { B, B, C, C, D, D } #end
+        #declare J = J + 1;
+      #end
+      #declare I = I + 1;
+    #end
+    inside_vector <0.2, 1, 0.3>
+    pigment { rgb 1 } finish { ambient 0 diffuse 1 }
+    #if (Sound) no_shadow #end
+  }
+#break
 #end
