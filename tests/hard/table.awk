@@ -98,6 +98,7 @@ function print_shapes(    i, parts, row, move) {
         if (word != "") {
             number = povray[names[i]]
             sub(/ pixels/, "", number)
+            sub(/no picture of/, "no picture", number)
             cell[row, move] = cell[row, move] " / " word (word == "passes" ? "" : " " number)
         }
     }
@@ -131,7 +132,8 @@ function print_readme(    i) {
     print "does and how many changed in it.  Where the scene is scaled by powers of two, no bit of pms's picture may change; else" >readme
     print "a pixel counts if it changed by more than 1/255, and 2 may.  At 1e8 a place is known to a millionth at best, and as many more" >readme
     print "may change as would if the shape changed by that.  The worst of all tries is shown: of 40 powers of two, of 12 powers of ten" >readme
-    print "and so on; povray is asked for three of each at most.\n" >readme
+    print "and so on; povray is asked for four of each at most.  Of scenes that are too small it makes no picture: it takes the" >readme
+    print "eye to be where it looks to.\n" >readme
     print_shapes()
     print "\n## Other scenes and numbers\n" >readme
     print "| case | pms (limit) | povray 3.7 |\n|---|---|---|" >readme

@@ -14,7 +14,7 @@ typedef struct Pair {
 } Pair;
 
 typedef struct Verdict {
-    bool is_made;                 /* there are pictures */
+    int pairs, refused;           /* of these there are no pictures */
     int changed, visible, blocks; /* see Difference */
 } Verdict;
 
@@ -27,24 +27,24 @@ static inline Verdict verdict_of_pair(const Pair *pair, bool is_by_povray)
                  .is_by_povray = is_by_povray};
     Image a, b;
     if (!picture_base(&shot, &a))
-        return (Verdict){.is_made = false};
+        return (Verdict){.pairs = 1, .refused = 1};
     shot.scene = pair->scene[1];
     shot.declares[1] = pair->variant;
     if (!picture_make(&shot, &b)) {
         image_done(&a);
-        return (Verdict){.is_made = false};
+        return (Verdict){.pairs = 1, .refused = 1};
     }
     Difference d = picture_difference(&a, &b);
     image_done(&a);
     image_done(&b);
-    return (Verdict){
-        .is_made = true, .changed = d.changed, .visible = d.visible, .blocks = d.blocks};
+    return (Verdict){.pairs = 1, .changed = d.changed, .visible = d.visible, .blocks = d.blocks};
 }
 
 /* The worse of two. */
 static inline void verdict_add(Verdict *worst, Verdict v)
 {
-    worst->is_made &= v.is_made;
+    worst->pairs += v.pairs;
+    worst->refused += v.refused;
     worst->changed = v.changed > worst->changed ? v.changed : worst->changed;
     worst->visible = v.visible > worst->visible ? v.visible : worst->visible;
 }
@@ -59,14 +59,15 @@ static inline bool verdict_wants_povray(void)
 static inline void verdict_row_povray(const char *name, const Verdict *v, int wrong, int limit)
 {
     enum { STRUGGLES_MAX = 160 * 120 / 100 };
-    if (!v->is_made)
-        printf("# povray: %s: fails: no picture\n", name);
-    else
-        printf("# povray: %s: %s: %d pixels\n", name,
-               wrong <= limit                ? "passes"
-               : v->visible <= STRUGGLES_MAX ? "struggles"
-                                             : "fails",
-               wrong);
+    const char *verdict = wrong <= limit && !v->refused                ? "passes"
+                          : v->visible <= STRUGGLES_MAX && !v->refused ? "struggles"
+                                                                       : "fails";
+    printf("# povray: %s: %s: ", name, verdict);
+    if (v->refused)
+        printf("no picture of %d in %d%s", v->refused, v->pairs, v->refused < v->pairs ? ", " : "");
+    if (v->refused < v->pairs)
+        printf("%d pixels", wrong);
+    printf("\n");
     fflush(stdout);
 }
 
