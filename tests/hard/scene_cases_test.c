@@ -55,7 +55,8 @@ static void check_scene(void **state)
     hard_row(c->name, text, "%d %s differ", wrong, c->is_in_blocks ? "blocks" : "pixels");
     if (verdict_wants_povray()) {
         Verdict povray = verdict_of(c, true);
-        verdict_row_povray(c->name, &povray, wrong_of(c, &povray), c->limit);
+        verdict_row_povray(c->name, &povray, wrong_of(c, &povray),
+                           c->is_in_blocks ? "blocks" : "pixels", c->limit);
     }
     assert_true(wrong <= c->limit);
 }

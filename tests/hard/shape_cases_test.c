@@ -124,7 +124,8 @@ static void check_shape(void **state)
     hard_row(c->name, text, "%d pixels %s", wrong, is_exact ? "changed" : "differ");
     if (verdict_wants_povray() && !c->is_slow) {
         Verdict povray = verdict_of(c, true);
-        verdict_row_povray(c->name, &povray, is_exact ? povray.changed : povray.visible, limit);
+        verdict_row_povray(c->name, &povray, is_exact ? povray.changed : povray.visible, "pixels",
+                           limit);
     }
     assert_true(wrong <= limit);
 }

@@ -56,7 +56,8 @@ static inline bool verdict_wants_povray(void)
 
 /* Print what povray does: it passes if what counts is within the limit, and struggles if at most
  * 1 % of the pixels are visibly wrong all the same. */
-static inline void verdict_row_povray(const char *name, const Verdict *v, int wrong, int limit)
+static inline void verdict_row_povray(const char *name, const Verdict *v, int wrong,
+                                      const char *unit, int limit)
 {
     enum { STRUGGLES_MAX = 160 * 120 / 100 };
     const char *verdict = wrong <= limit && !v->refused                ? "passes"
@@ -66,7 +67,7 @@ static inline void verdict_row_povray(const char *name, const Verdict *v, int wr
     if (v->refused)
         printf("no picture of %d in %d%s", v->refused, v->pairs, v->refused < v->pairs ? ", " : "");
     if (v->refused < v->pairs)
-        printf("%d pixels", wrong);
+        printf("%d %s", wrong, unit);
     printf("\n");
     fflush(stdout);
 }
