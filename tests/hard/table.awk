@@ -133,8 +133,8 @@ function print_readme(    i) {
     print "The shapes of `scenes/every_shape.inc` over a checkered floor; a picture of the scene, moved as the column says, is" >readme
     print "compared with that of the scene as it stands.  Each field says how many pixels of 19200 changed: in pms, then what povray" >readme
     print "does and how many changed in it.  Where the scene is scaled by powers of two, no bit of pms's picture may change; else" >readme
-    print "a pixel counts if it changed by more than 1/255, and 2 may.  At 1e8 a place is known to a millionth at best, and as many more" >readme
-    print "may change as would if the shape changed by that.  The worst of all tries is shown: of 40 powers of two, of 12 powers of ten" >readme
+    print "a pixel counts if it changed by more than 1/255, and 2 may.  At 1e8 a place is known to a millionth at best: there 20 may, and" >readme
+    print "twice as many as would if the shape changed by that.  The worst of all tries is shown: of 40 powers of two, of 12 powers of ten" >readme
     print "and so on; povray is asked for four of each at most.  Of scenes that are too small it makes no picture: it takes the" >readme
     print "eye to be where it looks to.\n" >readme
     print_shapes()
