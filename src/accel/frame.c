@@ -62,12 +62,12 @@ bool frame_enter(const IndexFrame *frame, const Ray *ray, FrameRay *out)
         !narrow(ray->o.y, ray->d.y, b->lo.y, b->hi.y, &near, &far) ||
         !narrow(ray->o.z, ray->d.z, b->lo.z, b->hi.z, &near, &far))
         return false;
-    out->line_start = near > 0 ? near : 0;
+    double length = v3_len(ray->d);
+    out->per_t = length * frame->scale;
+    out->line_start = near * out->per_t > FRAME_FAR ? near : 0;
     near = num_max(near, ray->tmin);
     if (!(near <= num_min(far, ray->tmax)))
         return false;
-    double length = v3_len(ray->d);
-    out->per_t = length * frame->scale;
     if (!(out->per_t > 0) || !isfinite(near) || !isfinite(out->per_t))
         return false;
     out->start = near - FRAME_PAD / out->per_t;

@@ -17,6 +17,9 @@
  * of a float ulp of 1. */
 #define FRAME_PAD (16 * EPS_FLOAT)
 
+/* From so far away, in frame units, the digits of a double are no better than a float's. */
+#define FRAME_FAR 0x1p24
+
 typedef struct IndexFrame {
     Bound bound; /* of all items, scene units */
     V3 center;
@@ -33,8 +36,9 @@ void frame_box(const IndexFrame *frame, Bound box, struct RTCBounds *out);
 typedef struct FrameRay {
     struct RTCRayHit hit; /* for Embree */
     double start;         /* where the frame ray starts, in t of the ray */
-    double line_start;    /* where the line enters the box ahead of the ray's origin, in t; 0: the
-                             origin is inside.  The same for all rays of one line. */
+    double line_start;    /* where the line enters a box that is FRAME_FAR ahead of the ray's
+                             origin, in t; else 0.  The same for all rays of one line, and for
+                             things beside each other, which let no ray through. */
     double per_t;         /* frame units per unit of t */
 } FrameRay;
 
