@@ -72,10 +72,12 @@ Shape *shape_lathe(Arena *arena, int degree, const CurveSpan *spans, uint32_t co
 
 /* The discriminant of the quadratic form x^2 + z^2 - r^2 along a straight piece, without the
  * cancellation of its coefficients. */
-static double straight_discriminant(const double x[2], const double z[2], const double r[2])
+static double straight_discriminant(const double x[2], const double z[2], const double r[2],
+                                    double *terms)
 {
     double xr = x[0] * r[1] - x[1] * r[0], zr = z[0] * r[1] - z[1] * r[0];
     double xz = x[0] * z[1] - x[1] * z[0];
+    *terms = xr * xr + zr * zr + xz * xz;
     return xr * xr + zr * zr - xz * xz;
 }
 
@@ -104,9 +106,15 @@ int lathe_roots(const RevolveData *data, const RevolvePiece *piece, const Revolv
     bernstein_add_product(r, r, n, -1, g);
     is_within[0] = g[0] < 0;
     is_within[1] = g[2 * n] < 0;
-    int count = n == 1 ? bernstein_quadratic(g, straight_discriminant(x, z, r), at)
+    double terms = 0, straight = 0;
+    int count = n == 1 ? bernstein_quadratic(g, straight_discriminant(x, z, r, &straight), at)
                        : bernstein_roots(g, 2 * n, at);
+    if (n == 1) /* what the discriminant is off moves the values by that over the bend */
+        terms = straight / fabs(g[0] - 2 * g[1] + g[2]);
+    for (int i = 0; i <= n; i++)
+        terms = num_max(terms, x[i] * x[i] + z[i] * z[i] + r[i] * r[i]);
     for (int i = 0; i < count; i++) {
+        out[i].terms = terms;
         out[i].s = bernstein_value(s, n, at[i]);
         out[i].u = part->from + (part->to - part->from) * at[i];
     }

@@ -218,7 +218,11 @@ static bool push_piece(const RevolveData *data, uint32_t number, const RevolveLi
     for (int i = 0; i < count; i++, is_rising = !is_rising) {
         /* v: whether the line goes along the piece's normal. */
         double along = is_rising == (l->e.y >= 0) ? 1 : -1;
-        Crossing c = {.t = roots[i].s, .part = number, .u = roots[i].u, .v = along};
+        Crossing c = {.t = roots[i].s,
+                      .t_error = roots[i].terms,
+                      .part = number,
+                      .u = roots[i].u,
+                      .v = along};
         scratch_push(scratch, &c);
     }
     int low = part.s[0] <= part.s[1] ? 0 : 1;
@@ -305,20 +309,22 @@ static V3 piece_normal(const RevolveData *data, const RevolvePiece *piece, doubl
     return v3_unit(v3(y_slope * p.x / rho, r < 0 ? r_slope : -r_slope, y_slope * p.z / rho));
 }
 
-/* Finish a crossing found by push_piece or push_lids. */
+/* Finish a crossing found by push_piece or push_lids; t is s, t_error the terms of a root. */
 static void finish(const Shape *shape, const RevolveLine *l, const LocalRay *ray, const Line *line,
                    bool is_entry, Crossing *c)
 {
     const RevolveData *data = shape->u.revolve;
-    double s = c->t, t = l->base + s / l->speed;
+    double s = c->t, t = l->base + s / l->speed, terms = c->t_error;
     bool is_lid = c->part >= data->piece_count;
     c->t = t;
     c->t_error = 4 * EPS_DOUBLE * (fabs(l->base) + fabs(t));
     if (line_wants(line, t)) {
-        V3 n = v3(0, 1, 0);
+        V3 n = v3(0, 1, 0), p = v3_mad(l->f, s, l->e);
         if (!is_lid)
-            n = piece_normal(data, &data->pieces[c->part], c->u, v3_mad(l->f, s, l->e));
+            n = piece_normal(data, &data->pieces[c->part], c->u, p);
         double off = v3_sum_abs(local_error(ray, t)) + PLACE_EPS * revolve_size(shape);
+        if (terms > 0)
+            off += 40 * EPS_DOUBLE * terms / sqrt(p.x * p.x + p.z * p.z);
         c->t_error += off / fabs(v3_dot(n, ray->d));
     }
     c->leaf = shape;

@@ -46,7 +46,8 @@ typedef struct RevolveLine {
 
 /* A place on a piece where a line crosses it. */
 typedef struct RevolveRoot {
-    double s, u; /* u: on the piece */
+    double s, u;  /* u: on the piece */
+    double terms; /* magnitude of the squares whose difference is 0 there */
 } RevolveRoot;
 
 enum { REVOLVE_ROOTS_MAX = 6 };

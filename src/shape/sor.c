@@ -61,6 +61,7 @@ int sor_roots(const RevolveData *data, const RevolvePiece *piece, const RevolveP
     is_within[1] = g[3] < 0;
     int count = bernstein_roots(g, 3, at);
     for (int i = 0; i < count; i++) {
+        out[i].terms = num_max(first, last);
         out[i].s = a + (b - a) * at[i];
         out[i].u = part->from + (part->to - part->from) * at[i];
     }

@@ -68,9 +68,16 @@ typedef struct SweepLine {
     V3 f, e, p, q;      /* orthonormal: e along the line */
     V3 inverse;         /* of e */
     double base, speed; /* t = base + s / speed */
+    double tmin;        /* t where crossings are wanted from */
     double near, far;   /* s where crossings are wanted */
     bool is_first_only; /* of these */
 } SweepLine;
+
+/* Is what happens at s seen, once t is rounded? */
+static bool is_after_start(const SweepLine *l, double s)
+{
+    return l->base + s / l->speed > l->tmin;
+}
 
 /* A span as a line sees it. */
 typedef struct SpanView {
@@ -323,7 +330,7 @@ static void push_stretch(const SweepData *data, uint32_t number, const SweepLine
     Crossing c = {.part = number};
     for (int end = 0; end < 2; end++) {
         double way = end ? 1 : -1;
-        if (end == 0 || !l->is_first_only || c.t <= l->near) {
+        if (end == 0 || !l->is_first_only || !is_after_start(l, c.t)) {
             SweepEnd place =
                 v->degree > 1 ? curved_end(v, way, &samples) : straight_end(v, way, from, to);
             c.t = exact_end(data, span, l, way, place.u);
@@ -385,9 +392,10 @@ static bool note_pieces(SweepLine *l, const ShapeScratch *scratch, int from)
 {
     for (int i = from; l->is_first_only && i + 1 < scratch->count; i += 2) {
         double in = scratch->items[i].t;
-        if (in <= l->near && scratch->items[i + 1].t > l->near)
+        bool is_before = !is_after_start(l, in);
+        if (is_before && is_after_start(l, scratch->items[i + 1].t))
             return false;
-        if (in > l->near)
+        if (!is_before)
             l->far = num_min(l->far, in);
     }
     return true;
@@ -429,6 +437,7 @@ static void line_begin(SweepLine *l, const SweepData *data, const LocalRay *ray,
     l->e = v3_scale(ray->d, 1 / l->speed);
     v3_frame(l->e, &l->p, &l->q);
     l->inverse = v3(1 / l->e.x, 1 / l->e.y, 1 / l->e.z);
+    l->tmin = line->near;
     l->near = (line->near - l->base) * l->speed;
     l->far = (line->far - l->base) * l->speed;
     l->is_first_only = line->is_first_only;
