@@ -7,6 +7,9 @@
 
 #include <string.h>
 
+/* How many times the error of a plane keeps it from being left out. */
+#define CLEARANCE 64.0
+
 bool shape_is_convex_leaf(const Shape *shape)
 {
     if (shape->clip_count)
@@ -123,12 +126,92 @@ static bool cut_by_planes(const Shape *node, const PlaneBlock *b, const Ray *ray
     return true;
 }
 
+/* What is looked for: the core on a part of a line. */
+typedef struct CoreQuery {
+    const Shape *node;
+    const Ray *ray;
+    double near, far;
+    ConvexCore *core;
+} CoreQuery;
+
+/* Cut the core by blocks of planes; false when nothing is left. */
+static bool cut_by_blocks(const CoreQuery *q, uint32_t first, uint32_t count)
+{
+    for (uint32_t i = first; i < first + count; i++)
+        if (!cut_by_planes(q->node, &q->node->planes[i], q->ray, q->core) ||
+            is_empty(q->core, q->near, q->far))
+            return false;
+    return true;
+}
+
+/* The most that n . v can be for the normals of a node. */
+static double most_along(const PlaneNode *node, V3 v)
+{
+    double along = v3_dot(node->axis, v), length2 = v3_len2(v), length = sqrt(length2);
+    if (along >= node->cosine * length)
+        return length;
+    double across2 = length2 - along * along;
+    return along * node->cosine + (across2 > 0 ? sqrt(across2) : 0) * node->sine;
+}
+
+/* How far the point at t may be outside some plane of a node; below 0: it is inside all, by more
+ * than any error. */
+static double outside_at(const PlaneNode *node, const Ray *ray, double t)
+{
+    if (isinf(t)) {
+        V3 way = t > 0 ? ray->d : v3_neg(ray->d);
+        double doubt = CLEARANCE * (PLANE_EPS + node->turn_doubt) * v3_sum_abs(way);
+        return most_along(node, way) + doubt < 0 ? -1 : INFINITY;
+    }
+    V3 p = v3_mad(ray->o, t, ray->d);
+    double size = v3_sum_abs(ray->o) + fabs(t) * v3_sum_abs(ray->d);
+    double doubt = (PLANE_EPS + node->turn_doubt) * size + node->place;
+    return most_along(node, p) - node->d + CLEARANCE * doubt;
+}
+
+/* The same for both ends of the core so far: if they are inside a plane, so is all between them,
+ * and the plane does not cut it. */
+static double outside_core(const CoreQuery *q, const PlaneNode *node)
+{
+    const ConvexCore *core = q->core;
+    double first = q->near, last = q->far;
+    if (core->entry.child != NO_CONVEX)
+        first = num_max(first, core->entry.lo);
+    if (core->exit.child != NO_CONVEX)
+        last = num_min(last, core->exit.hi);
+    return num_max(outside_at(node, q->ray, first), outside_at(node, q->ray, last));
+}
+
+/* Cut the core by the planes of a tree, those first that the core is most outside of. */
+static bool cut_by_tree(const CoreQuery *q)
+{
+    const PlaneNode *tree = q->node->plane_tree;
+    uint32_t stack[PLANE_TREE_DEPTH_MAX], count = 0;
+    stack[count++] = 0;
+    while (count > 0) {
+        const PlaneNode *node = &tree[stack[--count]];
+        if (outside_core(q, node) < 0)
+            continue;
+        if (node->right == 0) {
+            if (!cut_by_blocks(q, node->first, node->count))
+                return false;
+            continue;
+        }
+        uint32_t left = (uint32_t)(node - tree) + 1, right = node->right;
+        bool is_left_first = outside_core(q, &tree[left]) >= outside_core(q, &tree[right]);
+        stack[count++] = is_left_first ? right : left;
+        stack[count++] = is_left_first ? left : right;
+    }
+    return true;
+}
+
 bool convex_core(const Shape *node, const Ray *ray, double near, double far, ConvexCore *core)
 {
+    const CoreQuery query = {node, ray, near, far, core};
     core->entry.child = core->exit.child = NO_CONVEX;
-    for (int i = 0; i < node->plane_blocks; i++)
-        if (!cut_by_planes(node, &node->planes[i], ray, core) || is_empty(core, near, far))
-            return false;
+    if (node->plane_tree ? !cut_by_tree(&query)
+                         : !cut_by_blocks(&query, 0, (uint32_t)node->plane_blocks))
+        return false;
     if (node->plane_blocks && node->plane_count == node->convex_count)
         return true;
     /* Convex leaves bound the whole, so that none is in the index. */
@@ -143,42 +226,6 @@ bool convex_core(const Shape *node, const Ray *ray, double near, double far, Con
             return false;
     }
     return true;
-}
-
-static bool is_packable(const Shape *shape)
-{
-    return shape->is_convex_leaf && shape->kind == SHAPE_PLANE;
-}
-
-void convex_pack_planes(Arena *arena, Shape *node)
-{
-    node->planes = NULL;
-    node->plane_blocks = node->plane_count = 0;
-    for (int i = 0; i < node->child_count; i++)
-        node->plane_count += is_packable(node->children[i]);
-    if (node->kind != SHAPE_INTERSECTION || node->plane_count < 2)
-        return;
-    int blocks = (node->plane_count + BLOCK - 1) / BLOCK, next = 0;
-    PlaneBlock *out = ARENA_ARRAY(arena, PlaneBlock, (size_t)blocks);
-    if (!out)
-        return;
-    int last = 0;
-    for (int i = 0; next < blocks * BLOCK; i++) {
-        if (i < node->child_count && !is_packable(node->children[i]))
-            continue;
-        last = i < node->child_count ? i : last; /* the last plane fills the last block up */
-        const Shape *leaf = node->children[last];
-        double sign = leaf->is_inverted ? -1 : 1;
-        PlaneBlock *block = &out[next / BLOCK];
-        for (int axis = 0; axis < 3; axis++)
-            block->n[axis][next % BLOCK] = sign * v3_at(leaf->u.plane.normal, axis);
-        block->d[next % BLOCK] = sign * leaf->u.plane.distance;
-        block->place[next % BLOCK] = leaf->rounding.place;
-        block->turn_doubt[next % BLOCK] = leaf->u.plane.turn_doubt;
-        block->child[next++ % BLOCK] = last;
-    }
-    node->planes = out;
-    node->plane_blocks = blocks;
 }
 
 void convex_push(const ConvexEnd *end, ShapeScratch *scratch)

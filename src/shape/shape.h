@@ -43,6 +43,7 @@ typedef struct SweepData SweepData;
 typedef struct HeightData HeightData;
 typedef struct ReachBlock ReachBlock;
 typedef struct PlaneBlock PlaneBlock;
+typedef struct PlaneNode PlaneNode;
 typedef struct CsgIndex CsgIndex;
 
 /* Forms in object space; Shape.xform takes them to the world.  Spheres, boxes, planes and
@@ -222,6 +223,7 @@ struct Shape {
     Bound reach;           /* around every crossing, visible or not */
     const ReachBlock *reaches; /* of the children, packed; NULL: not made */
     const CsgIndex *index;     /* of many children; NULL: none */
+    const PlaneNode *plane_tree; /* over many planes; NULL: none */
     const PlaneBlock *planes;  /* of an intersection, packed; NULL: not made */
     int plane_count, plane_blocks;
 };

@@ -253,6 +253,19 @@ struct PlaneBlock {
     int child[BLOCK];
 };
 
+/* A node of the tree over the planes of an intersection.  Those of its left part come next, those
+ * of the right begin at `right`; 0: it has no parts. */
+typedef struct PlaneNode {
+    V3 axis;                     /* unit: of a cone around the normals */
+    double cosine, sine;         /* of its half angle, which is too large rather than too small */
+    double d;                    /* the least distance */
+    double place, turn_doubt;    /* the largest */
+    uint32_t first, count;       /* its blocks */
+    uint32_t right;
+} PlaneNode;
+
+enum { PLANE_TREE_DEPTH_MAX = 64 };
+
 /* Return the box that holds every crossing of a shape; *is_inside_beyond: the state of what
  * lies outside it. */
 Bound shape_reach(const Shape *shape, bool *is_inside_beyond);

@@ -94,8 +94,56 @@ static void test_core_is_merge(void **state)
     arena_free(arena);
 }
 
+/* A ball hewn by many planes, some twice, some far off, from in and outside. */
+static void test_many_planes(void **state)
+{
+    (void)state;
+    Arena *arena = arena_new();
+    ShapeScratch *one = shape_scratch_new(), *two = shape_scratch_new();
+    Rng rng = rng_at(11, 1, 0);
+    enum { PLANES = 900, TURNS = 30 };
+    int seen = 0;
+    for (int n = 0; n < TURNS; n++) {
+        Shape **children = ARENA_ARRAY(arena, Shape *, PLANES);
+        int count = 100 + (int)(rng_u32(&rng) % (PLANES - 100));
+        for (int i = 0; i < count; i++) {
+            V3 d = random_direction(&rng);
+            double distance = i % 9 == 0 ? 0.7 : i % 9 == 1 ? 3 : 0.6 + 0.2 * rng_double(&rng);
+            children[i] = i % 5 == 4   ? shape_copy(arena, children[i - 3])
+                          : i % 3 == 0 ? shape_plane(arena, v3_neg(d), -distance)
+                                       : shape_plane(arena, d, distance);
+            if (i % 5 != 4 && i % 3 == 0)
+                shape_invert(children[i]);
+            children[i]->surface = (uint32_t)i;
+        }
+        Shape *plain = shape_csg(arena, SHAPE_INTERSECTION, children, count);
+        Shape *finished = shape_copy(arena, plain);
+        shape_finish(arena, finished);
+        for (int i = 0; i < RAYS; i++) {
+            V3 from = v3_scale(random_direction(&rng), i % 4 ? 3 : 0.3);
+            V3 to = v3_scale(random_direction(&rng), 0.8);
+            Ray ray = {from, v3_unit(v3_sub(to, from)), 0, INFINITY};
+            CrossList a, b;
+            shape_crossings(plain, &ray, one, &a);
+            shape_crossings(finished, &ray, two, &b);
+            assert_same(&a, &b);
+            Crossing first;
+            bool is_hit = a.count > 0 && a.items[a.count - 1].t > 0;
+            assert_int_equal(shape_closest(finished, &ray, two, &first), is_hit);
+            if (is_hit)
+                assert_true(first.t == a.items[a.items[0].t > 0 ? 0 : 1].t);
+            seen += is_hit;
+        }
+    }
+    assert_true(seen > TURNS * RAYS / 2);
+    shape_scratch_free(one);
+    shape_scratch_free(two);
+    arena_free(arena);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_core_is_merge)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_core_is_merge),
+                                       cmocka_unit_test(test_many_planes)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
