@@ -49,7 +49,7 @@ ALLCFLAGS := -std=c17 -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 $(BASEFLAGS)
 ALLCXXFLAGS := -std=c++17 $(BASEFLAGS) $(WARN) $(CXXFLAGS)
 LIBS     := $(PKGLIB) -lm -lstdc++ -lpthread
 
-.PHONY: all help deps demo check check-all check-kill check-study parity bench bench-accuracy bench-shapes fuzz gallery floors headers install uninstall clean
+.PHONY: all help deps demo check check-all check-kill check-study parity parity-shapes bench bench-accuracy bench-shapes fuzz gallery floors headers install uninstall clean
 .DEFAULT_GOAL := all
 .SECONDARY:
 
@@ -109,6 +109,10 @@ check-hard-built: $(HARD)
 parity: deps ## compare pictures and times with the installed povray
 	$(Q)$(MAKE) --no-print-directory $(B)/pms
 	$(Q)PMS=$(B)/pms tests/parity/run.sh
+
+parity-shapes: deps ## compare the pictures of povray's own examples of shapes
+	$(Q)$(MAKE) --no-print-directory $(B)/pms
+	$(Q)PMS=$(B)/pms tests/parity/examples.sh
 
 bench: deps ## ratios against nanoflann, Embree and povray, measured in one run
 	$(Q)$(MAKE) --no-print-directory bench-built
