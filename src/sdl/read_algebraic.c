@@ -6,6 +6,7 @@
 
 Node *read_quadric(Parser *p)
 {
+    Span first = parse_peek(p)->span;
     V3 square = parse_v3(p);
     parse_comma(p);
     V3 mixed = parse_v3(p);
@@ -13,6 +14,9 @@ Node *read_quadric(Parser *p)
     V3 linear = parse_v3(p);
     parse_comma(p);
     double constant = read_finite(p, "the constant of a quadric", NULL);
+    if (v3_max_abs(square) == 0 && v3_max_abs(mixed) == 0 && v3_max_abs(linear) == 0)
+        parse_warn(p, WARN_GEOMETRY, span_join(first, parse_last_span(p)),
+                   "all coefficients but the last are 0: it is not seen");
     return read_leaf(p, shape_quadric(parse_arena(p), square, mixed, linear, constant));
 }
 

@@ -221,7 +221,7 @@ static bool cut_caps(PrismLine *l)
     l->in = num_min(lo, hi);
     l->out = num_max(lo, hi);
     l->pole = form->is_conic && !is_through_tip(l) ? -l->f.y / l->e.y : -INFINITY;
-    return l->in < l->out;
+    return l->in <= l->out; /* equal: a prism without height is a sheet */
 }
 
 static void line_begin(PrismLine *l, const PrismData *prism, const LocalRay *ray)
