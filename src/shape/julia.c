@@ -29,7 +29,7 @@ enum { FAR_ITERATIONS = 12 };
 #define FAR_NORM 1e6
 
 /* Heights below this are on the surface. */
-#define HEIGHT_SMALL (8 * EPS_DOUBLE)
+#define HEIGHT_SMALL EPS_DOUBLE
 
 /* How far off the set a point found on it may be, in radii: the set is rough. */
 #define POINT_ROUNDING 1e-9
@@ -481,11 +481,12 @@ static double walk_height(const void *ctx, double t)
     return log(norm + DBL_MIN);
 }
 
-/* Find where a step went in or out. */
-static double find_change(const JuliaWalk *walk, double lo, double hi)
+/* Find where a step went in or out.  Where it begins the line may just have gone the other way, and
+ * rounding have left it there. */
+static double find_change(const JuliaWalk *walk, double lo, double hi, bool is_inside)
 {
-    double at_lo = walk_height(walk, lo), at_hi = walk_height(walk, hi);
-    return bracket_zero(walk_height, walk, lo, at_lo, hi, at_hi, HEIGHT_SMALL);
+    double at_lo = fmax(fabs(walk_height(walk, lo)), HEIGHT_SMALL), at_hi = walk_height(walk, hi);
+    return bracket_zero(walk_height, walk, lo, is_inside ? -at_lo : at_lo, hi, at_hi, HEIGHT_SMALL);
 }
 
 static V3 normal_of(const JuliaData *data, V3 p, double tilt, bool is_last)
@@ -521,7 +522,7 @@ static bool walk_on(const JuliaWalk *walk, double *t, double end, Fate *fate)
         }
         reach = STEP_REACH;
         if (there.is_inside != fate->is_inside) {
-            *t = find_change(walk, *t, next);
+            *t = find_change(walk, *t, next, fate->is_inside);
             *fate = (Fate){.is_inside = there.is_inside};
             return true;
         }

@@ -368,7 +368,7 @@ static void test_shape(void **state)
            double_world.name(run.which), t->rays, t->crossings, t->fuzzy, t->missed, t->phantom,
            t->liars, t->off, t->inside, t->closest, t->worst_t, LIMIT_T, t->worst_normal,
            LIMIT_NORMAL, t->worst_share);
-    assert_true(t->crossings > t->rays / 16);
+    assert_true(t->crossings > t->rays / 32);
     assert_int_equal(t->missed + t->phantom + t->liars + t->off + t->inside + t->closest, 0);
     assert_true(t->worst_t <= LIMIT_T && t->worst_normal <= LIMIT_NORMAL);
 }
