@@ -42,7 +42,7 @@ done
 # accept FILE NAME: one tiny render by povray, without photons' share of the time
 accept() {
     if command -v povray >/dev/null 2>&1; then
-        povray "+I$1" +Lstdlib +W16 +H12 -A -D -F >"$work/log" 2>&1
+        povray "+I$1" +Lstdlib +Lscenes +W16 +H12 -A -D -F >"$work/log" 2>&1
         report $? "povray reads $2" "$work/log"
     else
         n=$((n + 1))
