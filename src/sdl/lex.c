@@ -34,9 +34,9 @@ typedef struct Lexer {
     size_t count, capacity;
     Open *open; /* heap, ours until the end */
     size_t open_count, open_capacity;
-    int list_size;  /* in a list of mesh2: numbers of its vectors; else 0 */
+    int list_size;  /* known to be in a list of mesh2: numbers of its vectors; else 0 */
     int list_depth; /* parentheses open in it */
-    int mesh_depth; /* braces open in a mesh, its own included; 0: not in one */
+    int mesh_depth; /* braces open in a mesh, its own included; 0: not known to be in one */
     bool is_out_of_memory;
     Token spare; /* handed out when memory is; nobody reads it */
 } Lexer;
@@ -358,9 +358,12 @@ static int list_size(const Lexer *lx)
     }
 }
 
-/* Keep track of the mesh and the list of mesh2 that the mark ahead begins, ends or nests in. */
+/* Keep track of the mesh and the list of mesh2 that the mark ahead begins, ends or nests in.  Where
+ * a directive or a call of a macro may lead elsewhere than on in the text, both are forgotten. */
 static void track_mesh(Lexer *lx, TokenKind mark)
 {
+    if (mark == TOKEN_HASH || (mark == TOKEN_LPAREN && last_kind(lx) == TOKEN_IDENTIFIER))
+        lx->mesh_depth = lx->list_size = 0;
     if (mark == TOKEN_LBRACE && (lx->mesh_depth > 0 || last_kind(lx) == KW_MESH))
         lx->mesh_depth++;
     if (mark == TOKEN_RBRACE && lx->mesh_depth > 0)
