@@ -47,14 +47,13 @@ static IndexEntry heap_take(ShapeScratch *scratch)
     return first;
 }
 
-/* Open the nearest entry. */
+/* Open the nearest entry; crossings found so are not sorted. */
 static void open_nearest(Walk *walk)
 {
     ShapeScratch *scratch = walk->scratch;
     IndexEntry entry = heap_take(scratch);
     if (entry.is_child) {
         list_child(walk->node, entry.what, walk->line, scratch, &walk->sweep);
-        crossings_sort(scratch->items + walk->at, scratch->count - walk->at);
         return;
     }
     size_t first = scratch->entry_count;
@@ -62,6 +61,18 @@ static void open_nearest(Walk *walk)
     size_t end = scratch->entry_count;
     for (size_t i = first; i < end; i++)
         heap_rise(scratch->entries, i);
+}
+
+/* Open the nearest entries: the more crossings wait, which are sorted and looked at again each
+ * time, the more entries at once, so that it costs no more than to list all children. */
+static void open_some(Walk *walk)
+{
+    ShapeScratch *scratch = walk->scratch;
+    int count = scratch->count, waiting = count - walk->at;
+    for (int left = 1 + waiting / 2; left > 0 && scratch->entry_count > 0; left--)
+        open_nearest(walk);
+    if (scratch->count > count)
+        crossings_sort(scratch->items + walk->at, scratch->count - walk->at);
 }
 
 /* Sweep over the events that nothing closed can have a part in, as far as the first visible
@@ -109,6 +120,6 @@ bool csg_first(const Shape *node, const Ray *ray, ShapeScratch *scratch, Crossin
         }
         if (scratch->entry_count == 0)
             return false;
-        open_nearest(&walk);
+        open_some(&walk);
     }
 }

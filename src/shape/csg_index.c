@@ -6,6 +6,8 @@
  */
 #include "shape/csg_int.h"
 
+#include <string.h>
+
 #include "base/mem.h"
 #include "shape/box_tree.h"
 
@@ -65,7 +67,8 @@ static int widest(const BoxTree *tree, const Brood *brood)
         const BoxNode *node = &tree->nodes[brood->what[k]];
         int more = node->count ? (int)node->count - 1 : 1;
         double area = half_area(node->box);
-        if (brood->count + more <= BLOCK && area > best_area) {
+        /* The root is split even if its area is no number: it must not hold itself. */
+        if (brood->count + more <= BLOCK && (best < 0 || area > best_area)) {
             best = k;
             best_area = area;
         }
@@ -101,23 +104,18 @@ typedef struct Sorted {
     int plain_count, beyond_count;
 } Sorted;
 
-static bool sort_children(Arena *kept, Arena *scratch, const Shape *node, Sorted *out)
+static bool sort_children(Arena *scratch, const Shape *node, Sorted *out)
 {
     size_t count = (size_t)node->child_count;
-    *out = (Sorted){
-        ARENA_ARRAY(scratch, Bound, count), ARENA_ARRAY(scratch, uint32_t, count), NULL, 0, 0, 0};
-    if (!out->boxes || !out->in_tree)
+    *out = (Sorted){.boxes = ARENA_ARRAY(scratch, Bound, count),
+                    .in_tree = ARENA_ARRAY(scratch, uint32_t, count),
+                    .plain = ARENA_ARRAY(scratch, uint32_t, count)};
+    if (!out->boxes || !out->in_tree || !out->plain)
         return false;
-    for (int i = 0; i < node->child_count; i++)
-        out->plain_count += !is_in_tree(node, node->children[i]);
-    out->plain = ARENA_ARRAY(kept, uint32_t, (size_t)out->plain_count);
-    if (!out->plain)
-        return false;
-    int plain = 0;
     for (uint32_t i = 0; i < count; i++) {
         const Shape *child = node->children[i];
         if (!is_in_tree(node, child)) {
-            out->plain[plain++] = i;
+            out->plain[out->plain_count++] = i;
             continue;
         }
         out->boxes[out->tree_count] = child->reach;
@@ -131,17 +129,20 @@ static void build_in(Arena *arena, Arena *scratch, Shape *node)
 {
     Sorted sorted;
     BoxTree tree;
-    if (!sort_children(arena, scratch, node, &sorted) || sorted.tree_count < INDEX_MIN ||
+    if (!sort_children(scratch, node, &sorted) || sorted.tree_count < INDEX_MIN ||
         !box_tree_new(scratch, sorted.boxes, sorted.tree_count, &tree))
         return;
     /* Every node but the last ones has four parts, and none has fewer than two. */
     IndexNode *nodes = ARENA_ARRAY(scratch, IndexNode, sorted.tree_count);
     CsgIndex *index = ARENA_NEW(arena, CsgIndex);
-    if (!nodes || !index)
+    uint32_t *plain = ARENA_ARRAY(arena, uint32_t, (size_t)sorted.plain_count);
+    if (!nodes || !index || !plain)
         return;
     Builder b = {&tree, sorted.in_tree, sorted.boxes, nodes, 1};
     build_node(&b, 0, 0);
-    *index = (CsgIndex){arena_copy(arena, nodes, b.node_count * sizeof *nodes), sorted.plain,
+    if (sorted.plain_count)
+        memcpy(plain, sorted.plain, (size_t)sorted.plain_count * sizeof *plain);
+    *index = (CsgIndex){arena_copy(arena, nodes, b.node_count * sizeof *nodes), plain,
                         sorted.plain_count, sorted.beyond_count};
     node->index = index->nodes ? index : NULL;
 }

@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: Apache-2.0 */
 #include "shape/shape.h"
 
+#include <float.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -187,13 +188,71 @@ static void test_deep(void **state)
     }
 }
 
+enum { HEAP = 20000 };
+
+/* A heap of spheres with one point in all: along a line out of it nearly all that there is waits at
+ * once.  With work that grew with the square of the count, this would not end. */
+static void test_heap(void **state)
+{
+    (void)state;
+    Rng rng = rng_at(35, 5, 0);
+    Shape **heap = ARENA_ARRAY(arena, Shape *, HEAP + 1);
+    for (int i = 0; i < HEAP; i++)
+        heap[i] = shape_sphere(arena, v3_scale(random_dir(&rng), 0.1), 1 + i * 1e-5);
+    check_node(node_of(SHAPE_MERGE, heap, HEAP), &rng, 20);
+    check_node(node_of(SHAPE_UNION, heap, HEAP), &rng, 20);
+    for (int i = 0; i < HEAP; i++)
+        shape_invert(heap[i]);
+    heap[HEAP] = shape_box(arena, v3(-2, -2, -2), v3(2, 2, 2));
+    check_node(node_of(SHAPE_INTERSECTION, heap, HEAP + 1), &rng, 20);
+}
+
+/* Entered one after the other, all left at one end: those that wait grow while others are ready. */
+static void test_sheaf(void **state)
+{
+    (void)state;
+    Rng rng = rng_at(35, 6, 0);
+    Shape **sheaf = ARENA_ARRAY(arena, Shape *, HEAP);
+    for (int i = 0; i < HEAP; i++)
+        sheaf[i] = shape_box(arena, v3(i * 1e-4, -1, -1), v3(4 + i * 1e-6, 1, 1));
+    Shape *plain = node_of(SHAPE_MERGE, sheaf, HEAP), *fast = shape_copy(arena, plain);
+    ShapeScratch *other = shape_scratch_new();
+    shape_finish(arena, fast);
+    for (int k = 0; k < 10; k++) {
+        V3 from = v3(-1, range(&rng, -0.5, 0.5), range(&rng, -0.5, 0.5));
+        V3 to = v3(5, range(&rng, -0.5, 0.5), range(&rng, -0.5, 0.5));
+        Ray ray = {from, v3_unit(v3_sub(to, from)), 1.5, INFINITY};
+        CrossList list;
+        Crossing found;
+        shape_crossings(plain, &ray, scratch, &list);
+        assert_int_equal(list.count, 2);
+        assert_true(shape_closest(fast, &ray, other, &found));
+        assert_true(found.t == list.items[1].t);
+    }
+    shape_scratch_free(other);
+}
+
+/* Boxes so big and flat that their areas are no numbers. */
+static void test_areas(void **state)
+{
+    (void)state;
+    Shape *slabs[20];
+    for (int i = 0; i < 20; i++)
+        slabs[i] = shape_box(arena, v3(-DBL_MAX / 2, 0, -1), v3(DBL_MAX / 2, 0, 1));
+    Shape *node = node_of(SHAPE_UNION, slabs, 20);
+    shape_finish(arena, node);
+    Ray ray = {v3(0.1, 1, 0.2), v3(0, -1, 0), 0, INFINITY};
+    Crossing found;
+    assert_true(shape_closest(node, &ray, scratch, &found));
+    assert_true(found.t == 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_many),
-        cmocka_unit_test(test_piles),
-        cmocka_unit_test(test_flush),
-        cmocka_unit_test(test_deep),
+        cmocka_unit_test(test_many),  cmocka_unit_test(test_piles), cmocka_unit_test(test_flush),
+        cmocka_unit_test(test_deep),  cmocka_unit_test(test_heap),  cmocka_unit_test(test_sheaf),
+        cmocka_unit_test(test_areas),
     };
     return cmocka_run_group_tests_name("csg_index", tests, set_up, tear_down);
 }
