@@ -64,7 +64,7 @@ static void open_nearest(Walk *walk)
 }
 
 /* Open the nearest entries: the more crossings wait, which are sorted and looked at again each
- * time, the more entries at once, so that it costs no more than to list all children. */
+ * time, the more entries at once, so that it costs little more than to list all children. */
 static void open_some(Walk *walk)
 {
     ShapeScratch *scratch = walk->scratch;
