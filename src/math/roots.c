@@ -237,28 +237,12 @@ static double largest_of_three(double k)
     return u;
 }
 
-/* The cube root of x > 0 to about 1e-10, by Halley's steps from a straight line.  cbrt will not do:
- * with it, a problem scaled by a power of two might have other digits. */
-static double cube_root(double x)
-{
-    int exponent;
-    double m = frexp(x, &exponent);
-    int third = (exponent - (exponent < 0 ? 2 : 0)) / 3;
-    m = ldexp(m, exponent - 3 * third); /* 0.5 to 4 */
-    double y = 0.75 + 0.23 * m;
-    for (int i = 0; i < 2; i++) {
-        double cube = y * y * y;
-        y *= (cube + 2 * m) / (2 * cube + m);
-    }
-    return ldexp(y, third);
-}
-
 /* The roots of y^3 + p y + q. */
 static int solve_depressed(double p, double q, double out[3])
 {
     double third = p / 3, half = 0.5 * fabs(q), disc = half * half + third * third * third;
     if (!(disc < 0)) { /* Cardano's formula, without its difference */
-        double cube = half + sqrt(disc), a = cube > 0 ? cube_root(cube) : 0, b = third / a;
+        double cube = half + sqrt(disc), a = cbrt(cube), b = third / a;
         out[0] = a > 0 ? -q / (a * a + third + b * b) : 0;
         return 1;
     }
@@ -272,12 +256,25 @@ static int solve_depressed(double p, double q, double out[3])
     return 3;
 }
 
+/* Return e so that |p| 4^-e and |q| 8^-e are about 1 at most, and the larger of them is. */
+static int size_of(double p, double q)
+{
+    int of_p, of_q, least = -100000;
+    frexp(p, &of_p);
+    frexp(q, &of_q);
+    int half = p != 0 ? (of_p - (of_p < 0 ? 1 : 0)) / 2 : least;
+    int third = q != 0 ? (of_q - (of_q < 0 ? 2 : 0)) / 3 : least;
+    return half > third ? half : third;
+}
+
 int roots_cubic_rough(const double c[4], double out[3])
 {
     double a = c[2] / c[3], b = c[1] / c[3], third = a / 3;
     double p = b - a * third, q = third * (2 * third * third - b) + c[0] / c[3];
-    int count = solve_depressed(p, q, out);
+    /* Scaled, so that nothing overflows, and what a power of two is has no part in the digits. */
+    int e = p != 0 || q != 0 ? size_of(p, q) : 0;
+    int count = solve_depressed(ldexp(p, -2 * e), ldexp(q, -3 * e), out);
     for (int i = 0; i < count; i++)
-        out[i] -= third;
+        out[i] = ldexp(out[i], e) - third;
     return count;
 }

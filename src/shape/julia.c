@@ -515,6 +515,8 @@ static bool walk_on(const JuliaWalk *walk, double *t, double end, Fate *fate)
     while (*t < end) {
         double known = fate->distance * walk->reach;
         double next = num_min(*t + num_max(reach * known, walk->least), end);
+        if (!(next > *t)) /* so far away that a step is less than a rounding */
+            next = nextafter(*t, end);
         Fate there = walk_at(walk, next);
         if (reach > 1 && next - *t > num_max(known, walk->least) + there.distance * walk->reach) {
             reach = 1;

@@ -348,6 +348,32 @@ static void sheet_point(const Shape *shape, const Crossing *crossing, V3 p, Loca
     out->error = (error < reach || !(reach > 0) ? error : reach) + 8 * EPS_DOUBLE * v3_sum_abs(p);
 }
 
+/* Is the gradient much larger as far from p as a crossing may be off?  Then the root is a multiple
+ * one: the gradient on it is nothing but rounding, and no ray can tell what is so near from it. */
+static bool is_flat(const PolyData *poly, V3 p, V3 gradient, double off)
+{
+    V3 n = v3_unit(gradient);
+    V3 beside = v3_mad(p, off, v3_is_finite(n) && v3_len2(n) > 0 ? n : v3(1, 0, 0));
+    double slope = v3_len(gradient);
+    return slope == 0 || v3_len(value_at(poly, beside).gradient) > 2 * slope;
+}
+
+/* The gradients to both sides of a root of odd multiplicity point the same way. */
+static V3 gradient_around(const PolyData *poly, V3 p, double off)
+{
+    V3 sum = v3(0, 0, 0);
+    for (int i = 0; i < 6; i++) {
+        double side = i % 2 ? off : -off;
+        V3 at = v3_add(p, v3(i / 2 == 0 ? side : 0, i / 2 == 1 ? side : 0, i / 2 == 2 ? side : 0));
+        sum = v3_add(sum, value_at(poly, at).gradient);
+    }
+    return sum;
+}
+
+/* A gradient counts whose value at the end of what a crossing may be off is so many of its errors.
+ */
+#define SLOPE_SURE 16
+
 static void poly_point(const Shape *shape, const Crossing *crossing, V3 p, LocalPoint *out)
 {
     if (crossing->part == PART_SHEET) {
@@ -368,9 +394,14 @@ static void poly_point(const Shape *shape, const Crossing *crossing, V3 p, Local
         p = next;
         v = better;
     }
-    double slope = v3_len(v.gradient), error = 8 * v.error / slope;
+    double slope = v3_len(v.gradient), error = (8 * v.error + fabs(v.f)) / slope;
+    V3 up = v.gradient;
+    if (is_flat(poly, p, v.gradient, reach)) {
+        up = gradient_around(poly, p, reach);
+        error = reach;
+    }
     out->p = p;
-    out->ng = slope > 0 ? v3_unit(v.gradient) : v3(1, 0, 0);
+    out->ng = v3_len2(up) > 0 ? v3_unit(up) : v3(1, 0, 0);
     out->error = (error < reach ? error : reach) + 8 * EPS_DOUBLE * v3_sum_abs(p);
 }
 

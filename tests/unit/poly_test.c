@@ -168,6 +168,36 @@ static void test_torus(void **state)
     arena_free(arena);
 }
 
+/* A plane that is there three times is seen as one: its normal is that of the plane, and light that
+ * leaves it does not meet it again. */
+static void test_triple(void **state)
+{
+    (void)state;
+    Arena *arena = arena_new();
+    ShapeScratch *scratch = shape_scratch_new();
+    double c[20] = {0};
+    c[poly_term_index(3, 0, 3, 0)] = 1;
+    Shape *s = make(arena, 3, c);
+    shape_finish(arena, s);
+    for (uint32_t i = 0; i < 2000; i++) {
+        Rng rng = rng_at(12, 7, i);
+        V3 o = random_v3(&rng, 1);
+        o.y = 0.5 + fabs(o.y);
+        Ray ray = {o, v3_unit(v3(o.z, -1, o.x)), 0, INFINITY};
+        Crossing a, b;
+        ShapePoint p;
+        assert_true(shape_closest(s, &ray, scratch, &a));
+        shape_point(&a, &ray, &p);
+        assert_true(p.ng.y > 1 - 1e-9 && fabs(p.p.y) <= p.p_error && p.p_error < 0.1);
+        V3 d = random_v3(&rng, 1);
+        d.y = 0.1 + fabs(d.y);
+        Ray from = {v3_mad(p.p, 2 * p.p_error, p.ng), v3_unit(d), 0, INFINITY};
+        assert_false(shape_closest(s, &from, scratch, &b));
+    }
+    shape_scratch_free(scratch);
+    arena_free(arena);
+}
+
 /* The square of a sphere's equation is a sheet seen from both sides, everywhere. */
 static void test_sheet(void **state)
 {
@@ -277,9 +307,10 @@ static void test_high_degree(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_order), cmocka_unit_test(test_samples),
-        cmocka_unit_test(test_torus), cmocka_unit_test(test_sheet),
-        cmocka_unit_test(test_scale), cmocka_unit_test(test_high_degree),
+        cmocka_unit_test(test_order),       cmocka_unit_test(test_samples),
+        cmocka_unit_test(test_torus),       cmocka_unit_test(test_sheet),
+        cmocka_unit_test(test_triple),      cmocka_unit_test(test_scale),
+        cmocka_unit_test(test_high_degree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -138,7 +138,7 @@ static void test_rough(void **state)
     double x[3];
     for (uint32_t i = 0; i < 20000; i++) {
         Rng rng = rng_at(5, 6, i);
-        double r[3], c[5], e[5], size = ldexp(1, (int)(i % 100) - 50);
+        double r[3], c[5], e[5], size = ldexp(1, 6 * (int)(i % 100) - 300);
         for (int k = 0; k < 3; k++)
             r[k] = (2 * rng_double(&rng) - 1) * size;
         sort(r, 3);
