@@ -72,11 +72,14 @@ static Status read_pixel(const Args *args, const RenderOptions *options, int *x,
 {
     const char *text = args->value[OPT_REPLAY];
     int length = 0;
-    if (sscanf(text, "%d,%d%n", x, y, &length) != 2 || text[length])
+    if (sscanf(text, "%9d,%9d%n", x, y, &length) != 2 || text[length])
         return diag_fail(args->diag, ERR_USAGE, "--replay wants X,Y, got '%s'", text);
     if (*x < 0 || *y < 0 || *x >= options->width || *y >= options->height)
         return diag_fail(args->diag, ERR_USAGE, "pixel %s does not lie in the picture of %dx%d",
                          text, options->width, options->height);
+    if (args->output_count > 0 || args_has(args, OPT_STATS) || args_has(args, OPT_ERROR_MAP))
+        return diag_fail(args->diag, ERR_USAGE,
+                         "--replay writes no files: leave out -o, --stats and --error-map");
     if (options->plan.is_progressive)
         return diag_fail(args->diag, ERR_USAGE,
                          "--replay wants a render of one pass: leave out --progressive, --time "

@@ -401,6 +401,7 @@ static void find_known(const FuncBuilder *b, Call *call, const int *arguments)
     int first = callee->param_count + callee->const_count;
     for (int i = 0; i < first; i++) {
         bool is_param = i < callee->param_count;
+        call->value[i] = 0;
         call->is_known[i] = !is_param || func_is_const(b, arguments[i], &call->value[i]);
         if (!is_param)
             call->value[i] = callee->consts[i - callee->param_count];

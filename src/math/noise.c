@@ -436,9 +436,10 @@ static void part_set(Part *part, int axis, Range at)
     double lo = at.lo * (1 - at.lo), hi = at.hi * (1 - at.hi);
     bool has_middle = at.lo < 0.5 && at.hi > 0.5;
     part->at[axis] = at;
-    part->eased[axis] = (Range){fmax(ease(at.lo), 0), fmin(ease(at.hi), 1)};
-    part->steep[axis] =
-        (Range){fmax(6 * fmin(lo, hi), 0), has_middle ? 1.5 : fmax(6 * fmax(lo, hi), 0)};
+    /* Below 0, where a fraction may begin, it falls towards 0. */
+    part->eased[axis] =
+        (Range){at.lo < 0 ? 0 : ease(at.lo), fmin(fmax(ease(at.lo), ease(at.hi)), 1)};
+    part->steep[axis] = (Range){6 * fmin(lo, hi), has_middle ? 1.5 : 6 * fmax(lo, hi)};
 }
 
 /* The cells of a box along an axis. */
@@ -456,8 +457,9 @@ static bool cells_along(int generator, Range box, Cells *out)
         return false;
     out->count = (int)count;
     out->first = lo.cell;
-    out->at[0] = (Range){fmax(lo.fraction, 0), count > 1 ? 1 : fmin(hi.fraction, 1)};
-    out->at[1] = (Range){0, fmin(fmax(hi.fraction, 0), 1)};
+    /* Next to a whole number a fraction may be a little below 0, as it is for values. */
+    out->at[0] = (Range){lo.fraction, count > 1 ? 1 : hi.fraction};
+    out->at[1] = (Range){-CELL_SLACK, hi.fraction};
     return true;
 }
 

@@ -29,6 +29,12 @@ ok $? "a pixel outside is refused"
 run "$PMS" s.pms --replay 1
 [ "$code" -eq 2 ] && grep -q -- '--replay wants X,Y' err
 ok $? "X,Y is wanted"
+run "$PMS" s.pms -w 40 --height 30 --replay 4294967297,1
+[ "$code" -eq 2 ] && grep -q -- '--replay wants X,Y' err
+ok $? "and no more digits than a picture has"
+run "$PMS" s.pms -w 40 --height 30 --replay 1,1 -o x.png
+[ "$code" -eq 2 ] && grep -q 'writes no files' err && [ ! -e x.png ]
+ok $? "no file is written, and none may be asked for"
 run "$PMS" s.pms -w 40 --height 30 --replay 1,1 --progressive --passes 2
 [ "$code" -eq 2 ] && grep -q 'one pass' err
 ok $? "and one pass"

@@ -111,6 +111,10 @@ static void bounds_hold(void **state)
         for (int k = 0; k < 3; k++) {
             box[k].lo = i % 7 ? spread(&rng) : floor(spread(&rng));
             box[k].hi = box[k].lo + 3 * size * rng_double(&rng);
+            if (i % 11 == k) /* next to a whole number */
+                box[k] = (Range){-3 - 5e-11 * rng_double(&rng), -3 + (i % 2 ? 1e-11 : -1e-12)};
+            if (box[k].lo > box[k].hi)
+                box[k].lo = box[k].hi - 4e-11;
         }
         Range value = noise_range(noise, generator, box, slopes);
         for (int j = 0; j < 20; j++) {
