@@ -43,6 +43,7 @@ typedef struct Func {
 /* Ranges of all slots of a function: of its values, and of its derivatives. */
 typedef struct FuncRanges {
     Range value[FUNC_SLOTS_MAX], slope[FUNC_SLOTS_MAX];
+    bool has_no_value; /* the function has none anywhere there: set by func_range */
 } FuncRanges;
 
 /* --- making --------------------------------------------------------------------------------- */

@@ -544,10 +544,42 @@ static Range mended(Range r)
     return range(isnan(r.lo) ? -INFINITY : r.lo, isnan(r.hi) ? INFINITY : r.hi);
 }
 
+/* What stands for no number anywhere. */
+static Range none(void)
+{
+    return range(NAN, NAN);
+}
+
+static bool is_none(Range r)
+{
+    return isnan(r.lo);
+}
+
 /* May the values in a range be no numbers? */
 static bool may_be_none(Range r)
 {
-    return r.lo == -INFINITY && r.hi == INFINITY;
+    return is_none(r) || (r.lo == -INFINITY && r.hi == INFINITY);
+}
+
+/* Is a step no number where one of its own is none?  A power may be 1 all the same, and of two the
+ * least or the largest may be the other. */
+static bool keeps_none(FuncOp op)
+{
+    return op != FUNC_POW && op != FUNC_MIN && op != FUNC_MAX;
+}
+
+/* Is the step no number for any of these? */
+static bool has_no_value(FuncOp op, const Range x[FUNC_FROM_MAX])
+{
+    switch (op) {
+    case FUNC_SQRT:
+    case FUNC_LN:
+        return x[0].hi < 0;
+    case FUNC_POW:
+        return x[0].hi < 0 && is_point(x[1]) && rint(x[1].lo) != x[1].lo;
+    default:
+        return false;
+    }
 }
 
 /* Does a step make a number of what is none, and do its own bounds say so? */
@@ -564,11 +596,12 @@ static bool is_noise(FuncOp op)
 /* All but the choice and noise have two numbers at most; of those that have one, both are that. */
 static Range sure_value(const FuncStep *step, const Range x[FUNC_FROM_MAX], const Noise *noise)
 {
-    if (is_noise((FuncOp)step->op))
+    FuncOp op = (FuncOp)step->op;
+    if (is_noise(op))
         return noise_range(noise, step->op - FUNC_NOISE1 + 1, x, NULL);
-    if (!is_sure((FuncOp)step->op) && (may_be_none(x[0]) || may_be_none(x[1])))
-        return RANGE_ALL;
-    return mended(step_value(step, x));
+    if (!is_sure(op) && (may_be_none(x[0]) || may_be_none(x[1])))
+        return keeps_none(op) && (is_none(x[0]) || is_none(x[1])) ? none() : RANGE_ALL;
+    return has_no_value(op, x) ? none() : mended(step_value(step, x));
 }
 
 static void take(const FuncStep *step, const Range *slots, Range x[FUNC_FROM_MAX])
@@ -583,16 +616,20 @@ static void take(const FuncStep *step, const Range *slots, Range x[FUNC_FROM_MAX
 
 Range func_range(const Func *func, const Range *arguments, FuncRanges *work)
 {
-    Range *slots = work->value, x[FUNC_FROM_MAX];
+    Range *slots = work->value, x[FUNC_FROM_MAX] = {{0, 0}};
     memcpy(slots, arguments, (size_t)func->param_count * sizeof *slots);
     Range *consts = slots + func->param_count, *out = consts + func->const_count;
     for (int i = 0; i < func->const_count; i++)
         consts[i] = mended(range(func->consts[i], func->consts[i]));
     for (int i = 0; i < func->step_count; i++) {
         take(&func->steps[i], slots, x);
+        FuncOp op = (FuncOp)func->steps[i].op;
+        for (int k = 0; k < FUNC_FROM_MAX && (is_sure(op) || is_noise(op)); k++)
+            x[k] = mended(x[k]);
         out[i] = sure_value(&func->steps[i], x, func->noise);
     }
-    return slots[func->result];
+    work->has_no_value = is_none(slots[func->result]);
+    return mended(slots[func->result]);
 }
 
 static Range noise_slope(const FuncStep *step, const Range *x, const Range *s, const Noise *noise)

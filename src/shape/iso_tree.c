@@ -89,7 +89,8 @@ static void look(Builder *b, uint32_t at)
 {
     IsoNode *node = &b->nodes[at];
     Range value = value_in(b, &b->boxes[at]);
-    node->kind = value.lo > 0 ? ISO_OUT : value.hi <= 0 ? ISO_IN : ISO_HALVED;
+    bool is_out = b->work->has_no_value || value.lo > 0;
+    node->kind = is_out ? ISO_OUT : value.hi <= 0 ? ISO_IN : ISO_HALVED;
     if (node->kind != ISO_HALVED || b->depths[at] < DEPTH_COARSE)
         return;
     IsoCell cell;

@@ -157,7 +157,7 @@ static bool search_stretch(IsoLine *line, End a, End b, int depth, TakeRoot take
     if (line->stretches-- <= 0 || depth >= HALVINGS_MAX || b.s - a.s <= line->least)
         return take_between(line, a, b, take, ctx);
     Range value = value_over(line, a.s, b.s, line->work);
-    if (value.lo > 0 || value.hi <= 0)
+    if (line->work->has_no_value || value.lo > 0 || value.hi <= 0)
         return false;
     Range slope = slope_over(line, line->work);
     if (slope.lo > 0 || slope.hi < 0)

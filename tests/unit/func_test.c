@@ -43,7 +43,7 @@ static void ranges_hold(void **state)
 {
     (void)state;
     Rng rng = rng_at(1, 2, 3);
-    int finite = 0;
+    int finite = 0, empty = 0;
     static FuncRanges work;
     for (int i = 0; i < FUNCTIONS; i++) {
         const Func *func = random_func(arena, &rng);
@@ -54,6 +54,7 @@ static void ranges_hold(void **state)
                              {fmin(p.z, q.z), fmax(p.z, q.z)}};
         const Range along[3] = {{d.x, d.x}, {d.y, d.y}, {d.z, d.z}};
         Range value = func_range(func, at, &work), slope = func_slope(func, along, &work);
+        empty += work.has_no_value;
         finite += isfinite(value.lo) && isfinite(slope.lo) && isfinite(slope.hi);
         double last = NAN, last_s = 0;
         for (int k = 0; k <= POINTS; k++) {
@@ -65,6 +66,7 @@ static void ranges_hold(void **state)
             double f = value_at(func, here);
             if (isnan(f))
                 continue;
+            assert_false(work.has_no_value);
             assert_true(f >= value.lo && f <= value.hi);
             double rise = f - last, doubt = 1e-9 * (fabs(value.lo) + fabs(value.hi));
             if (isfinite(rise) && isfinite(doubt)) {
@@ -75,7 +77,8 @@ static void ranges_hold(void **state)
             last_s = s;
         }
     }
-    assert_true(finite > FUNCTIONS / 3); /* else this says little */
+    /* else this says little */
+    assert_true(finite > FUNCTIONS / 3 && empty > FUNCTIONS / 100);
 }
 
 /* Where the range of the slope along an axis is narrow, the derivative is in it. */
