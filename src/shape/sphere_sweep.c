@@ -8,6 +8,7 @@
  * their joints, so that there the pieces of both overlap and become one.
  * SPDX-License-Identifier: Apache-2.0 */
 #include "math/bernstein.h"
+#include "math/bracket.h"
 #include "shape/box_tree.h"
 #include "shape/shape_int.h"
 
@@ -165,42 +166,29 @@ static SweepEnd straight_end(const SpanView *v, double way, double from, double 
     return best;
 }
 
+/* One of the two surfaces of a span. */
+typedef struct SpanSide {
+    const SpanView *v;
+    double way;
+} SpanSide;
+
 /* Return a number whose sign is that of the derivative of way s + sqrt(D). */
-static double end_slope(const SpanView *v, double way, double u)
+static double end_slope(const void *ctx, double u)
 {
-    double slope, along, d = bernstein_center_at(&v->d_center, u, &slope);
-    bernstein_center_at(&v->s_center, u, &along);
-    return slope + 2 * way * along * sqrt(num_max(d, 0));
+    const SpanSide *side = ctx;
+    double slope, along, d = bernstein_center_at(&side->v->d_center, u, &slope);
+    bernstein_center_at(&side->v->s_center, u, &along);
+    return slope + 2 * side->way * along * sqrt(num_max(d, 0));
 }
 
-/* Find where the derivative turns from positive to negative between lo and hi: by secants that do
- * not get stuck at one side. */
+/* Find where the derivative turns from positive to negative between lo and hi. */
 static double find_turn(const SpanView *v, double way, double lo, double hi)
 {
-    double g_lo = end_slope(v, way, lo), g_hi = end_slope(v, way, hi), last = 0;
+    SpanSide side = {v, way};
+    double g_lo = end_slope(&side, lo), g_hi = end_slope(&side, hi);
     if (!(g_lo > 0))
         return lo;
-    if (!(g_hi < 0))
-        return hi;
-    for (int i = 0; i < 60 && hi - lo > 0x1p-50; i++) {
-        double u = (lo * g_hi - hi * g_lo) / (g_hi - g_lo);
-        if (!(u > lo && u < hi))
-            u = 0.5 * (lo + hi);
-        double g = end_slope(v, way, u);
-        if (g == 0)
-            return u;
-        if (g > 0) {
-            lo = u;
-            g_lo = g;
-            g_hi *= last > 0 ? 0.5 : 1;
-        } else {
-            hi = u;
-            g_hi = g;
-            g_lo *= last < 0 ? 0.5 : 1;
-        }
-        last = g;
-    }
-    return 0.5 * (lo + hi);
+    return g_hi < 0 ? bracket_zero(end_slope, &side, lo, g_lo, hi, g_hi, 0) : hi;
 }
 
 enum { SAMPLES = 6, MANY_SAMPLES = 96 };
