@@ -15,11 +15,9 @@ typedef struct Root {
     double error; /* bound on |x - exact root| */
 } Root;
 
-/* Find the real roots, ascending; returns how many.  A polynomial that is zero everywhere has
+/* Find the real roots of a quadratic, ascending; returns how many.  One that is zero everywhere has
  * none.  Never fails. */
 int roots_quadratic(const double c[3], const double *c_error, Root out[2]);
-int roots_cubic(const double c[4], const double *c_error, Root out[3]);
-int roots_quartic(const double c[5], const double *c_error, Root out[4]);
 
 /* Find the real roots of a polynomial of any degree up to ROOTS_DEGREE_MAX from lo to hi,
  * ascending; returns how many.  lo and hi may be infinite.

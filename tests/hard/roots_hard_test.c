@@ -109,9 +109,9 @@ static int solve(const double *c, const double *e, int degree, Root *out)
     case 2:
         return roots_quadratic(c, e, out);
     case 3:
-        return roots_cubic(c, e, out);
+        return roots_within(c, e, 3, -INFINITY, INFINITY, out);
     case 4:
-        return roots_quartic(c, e, out);
+        return roots_within(c, e, 4, -INFINITY, INFINITY, out);
     default:
         return roots_within(c, e, degree, -INFINITY, INFINITY, out);
     }

@@ -27,8 +27,8 @@ static void expand(const double *r, int n, double scale, double *c, double *e)
 static int solve(int n, const double *c, const double *e, Root *out)
 {
     return n == 2   ? roots_quadratic(c, e, out)
-           : n == 3 ? roots_cubic(c, e, out)
-                    : roots_quartic(c, e, out);
+           : n == 3 ? roots_within(c, e, 3, -INFINITY, INFINITY, out)
+                    : roots_within(c, e, 4, -INFINITY, INFINITY, out);
 }
 
 static void sort(double *r, int n)
@@ -72,12 +72,13 @@ static void test_none(void **state)
     (void)state;
     Root r[4];
     assert_int_equal(roots_quadratic((double[]){1, 0, 1}, NULL, r), 0);
-    assert_int_equal(roots_quartic((double[]){1, 0, 0, 0, 1}, NULL, r), 0);
-    assert_int_equal(roots_quartic((double[]){5, 0, 2, 0, 1}, NULL, r), 0);
+    assert_int_equal(roots_within((double[]){1, 0, 0, 0, 1}, NULL, 4, -INFINITY, INFINITY, r), 0);
+    assert_int_equal(roots_within((double[]){5, 0, 2, 0, 1}, NULL, 4, -INFINITY, INFINITY, r), 0);
     assert_int_equal(roots_quadratic((double[]){5, 0, 0}, NULL, r), 0);
     assert_int_equal(roots_quadratic((double[]){0, 0, 0}, NULL, r), 0);
     assert_int_equal(roots_quadratic((double[]){NAN, 1, 1}, NULL, r), 0);
-    assert_int_equal(roots_cubic((double[]){1, INFINITY, 1, 1}, NULL, r), 0);
+    assert_int_equal(roots_within((double[]){1, INFINITY, 1, 1}, NULL, 3, -INFINITY, INFINITY, r),
+                     0);
 }
 
 /* Lower degrees by zero leading coefficients; a tiny one does not disturb the others. */
@@ -85,13 +86,13 @@ static void test_degenerate(void **state)
 {
     (void)state;
     Root r[4];
-    assert_int_equal(roots_quartic((double[]){-6, 3, 0, 0, 0}, NULL, r), 1);
+    assert_int_equal(roots_within((double[]){-6, 3, 0, 0, 0}, NULL, 4, -INFINITY, INFINITY, r), 1);
     assert_true(r[0].x == 2);
-    assert_int_equal(roots_cubic((double[]){2, -3, 1, 0}, NULL, r), 2);
+    assert_int_equal(roots_within((double[]){2, -3, 1, 0}, NULL, 3, -INFINITY, INFINITY, r), 2);
     assert_true(r[0].x == 1 && r[1].x == 2);
     assert_int_equal(roots_quadratic((double[]){-1, 1, 1e-300}, NULL, r), 2);
     assert_true(fabs(r[1].x - 1) <= r[1].error && r[1].error < 1e-14);
-    assert_int_equal(roots_cubic((double[]){0, 0, 0, 1}, NULL, r), 1);
+    assert_int_equal(roots_within((double[]){0, 0, 0, 1}, NULL, 3, -INFINITY, INFINITY, r), 1);
     assert_true(r[0].x == 0 || fabs(r[0].x) <= r[0].error);
 }
 
@@ -102,14 +103,18 @@ static void test_double(void **state)
     Root r[4];
     assert_int_equal(roots_quadratic((double[]){1, -2, 1}, NULL, r), 2);
     assert_true(r[0].x == 1 && r[1].x == 1);
-    assert_int_equal(roots_cubic((double[]){-2, 5, -4, 1}, NULL, r), 3); /* (x-1)^2 (x-2) */
+    assert_int_equal(roots_within((double[]){-2, 5, -4, 1}, NULL, 3, -INFINITY, INFINITY, r),
+                     3); /* (x-1)^2 (x-2) */
     assert_true(fabs(r[0].x - 1) <= r[0].error && fabs(r[1].x - 1) <= r[1].error);
     assert_true(fabs(r[2].x - 2) <= r[2].error && r[2].error < 1e-12);
-    assert_int_equal(roots_quartic((double[]){4, 0, -4, 0, 1}, NULL, r), 4); /* (x^2-2)^2 */
+    assert_int_equal(roots_within((double[]){4, 0, -4, 0, 1}, NULL, 4, -INFINITY, INFINITY, r),
+                     4); /* (x^2-2)^2 */
     assert_true(fabs(r[0].x + sqrt(2)) <= r[0].error && r[0].error < 1e-6);
     assert_true(fabs(r[3].x - sqrt(2)) <= r[3].error);
-    assert_int_equal(roots_quartic((double[]){4 + 1e-9, 0, -4, 0, 1}, NULL, r), 0);
-    assert_int_equal(roots_quartic((double[]){4 - 1e-9, 0, -4, 0, 1}, NULL, r), 4);
+    assert_int_equal(
+        roots_within((double[]){4 + 1e-9, 0, -4, 0, 1}, NULL, 4, -INFINITY, INFINITY, r), 0);
+    assert_int_equal(
+        roots_within((double[]){4 - 1e-9, 0, -4, 0, 1}, NULL, 4, -INFINITY, INFINITY, r), 4);
 }
 
 /* x scaled by a power of two: the same bits, scaled. */
@@ -124,8 +129,8 @@ static void test_scale(void **state)
             d[k] = c[k] / power;
         }
         Root a[4], b[4];
-        int n = roots_quartic(c, NULL, a);
-        assert_int_equal(roots_quartic(d, NULL, b), n);
+        int n = roots_within(c, NULL, 4, -INFINITY, INFINITY, a);
+        assert_int_equal(roots_within(d, NULL, 4, -INFINITY, INFINITY, b), n);
         for (int k = 0; k < n; k++)
             assert_true(b[k].x == a[k].x * s);
     }
