@@ -39,6 +39,13 @@ static inline bool bound_holds(const Bound *b, V3 p)
 
 static inline bool bound_is_finite(Bound b) { return v3_is_finite(b.lo) && v3_is_finite(b.hi); }
 
+/* Return half of the area of the surface. */
+static inline double bound_half_area(Bound b)
+{
+    V3 size = v3_sub(b.hi, b.lo);
+    return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
 static inline V3 bound_center(Bound b) { return v3_scale(v3_add(b.lo, b.hi), 0.5); }
 
 /* Return the radius of the sphere through the corners of a finite box. */

@@ -27,11 +27,6 @@ static double whole(double x)
     return t >= INT32_MIN && t <= INT32_MAX ? t : INT32_MIN;
 }
 
-static bool is_noise(FuncOp op)
-{
-    return op >= FUNC_NOISE1 && op <= FUNC_NOISE3;
-}
-
 static double compute(FuncOp op, const double x[FUNC_FROM_MAX], const Noise *noise)
 {
     double a = x[0], b = x[1];
@@ -272,7 +267,7 @@ static void differentiate(const Func *func, const double *arguments, double *slo
         for (int k = 0; k < FUNC_FROM_MAX; k++)
             g[k] = slopes[step->from[k]];
         double value = slots[first + i] = compute((FuncOp)step->op, x, func->noise);
-        slopes[first + i] = is_noise((FuncOp)step->op)
+        slopes[first + i] = func_is_noise((FuncOp)step->op)
                                 ? noise_slope(func->noise, (FuncOp)step->op, x, g)
                                 : step_gradient((FuncOp)step->op, x, value, g);
     }

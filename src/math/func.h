@@ -25,6 +25,12 @@ typedef enum FuncOp {
     FUNC_OP_COUNT
 } FuncOp;
 
+/* Is this noise of a place? */
+static inline bool func_is_noise(FuncOp op)
+{
+    return op >= FUNC_NOISE1 && op <= FUNC_NOISE3;
+}
+
 enum { FUNC_SLOTS_MAX = 1024, FUNC_PARAMS_MAX = 56, FUNC_FROM_MAX = 4 };
 
 typedef struct FuncStep {

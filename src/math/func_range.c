@@ -588,16 +588,11 @@ static bool is_sure(FuncOp op)
     return op == FUNC_SELECT || op == FUNC_INT || (op >= FUNC_LESS && op <= FUNC_OR);
 }
 
-static bool is_noise(FuncOp op)
-{
-    return op >= FUNC_NOISE1 && op <= FUNC_NOISE3;
-}
-
 /* All but the choice and noise have two numbers at most; of those that have one, both are that. */
 static Range sure_value(const FuncStep *step, const Range x[FUNC_FROM_MAX], const Noise *noise)
 {
     FuncOp op = (FuncOp)step->op;
-    if (is_noise(op))
+    if (func_is_noise(op))
         return noise_range(noise, step->op - FUNC_NOISE1 + 1, x, NULL);
     if (!is_sure(op) && (may_be_none(x[0]) || may_be_none(x[1])))
         return keeps_none(op) && (is_none(x[0]) || is_none(x[1])) ? none() : RANGE_ALL;
@@ -624,7 +619,7 @@ Range func_range(const Func *func, const Range *arguments, FuncRanges *work)
     for (int i = 0; i < func->step_count; i++) {
         take(&func->steps[i], slots, x);
         FuncOp op = (FuncOp)func->steps[i].op;
-        for (int k = 0; k < FUNC_FROM_MAX && (is_sure(op) || is_noise(op)); k++)
+        for (int k = 0; k < FUNC_FROM_MAX && (is_sure(op) || func_is_noise(op)); k++)
             x[k] = mended(x[k]);
         out[i] = sure_value(&func->steps[i], x, func->noise);
     }
@@ -652,7 +647,7 @@ Range func_slope(const Func *func, const Range *slopes, FuncRanges *work)
         take(&func->steps[i], slots, s);
         /* Around a pole there is no slope, nor where there may be no value. */
         slots[first + i] = may_be_none(value) ? RANGE_ALL
-                           : is_noise((FuncOp)func->steps[i].op)
+                           : func_is_noise((FuncOp)func->steps[i].op)
                                ? mended(noise_slope(&func->steps[i], x, s, func->noise))
                                : mended(step_slope(&func->steps[i], x, s, value));
     }

@@ -218,7 +218,7 @@ static void warn_of_fault(const Pass *pass, FilmFault *fault)
     diag_warn(pass->diag, WARN_RENDER, fault->object ? fault->object->span : SPAN_NONE,
               "light that is no number came from %s in sample %u of pixel %d,%d, the first of %llu "
               "samples that are left out: --replay %d,%d tells more",
-              fault->object ? "here" : "the sky", fault->index, fault->x, fault->y,
+              fault->object ? "here" : "the sky or the camera", fault->index, fault->x, fault->y,
               (unsigned long long)fault->count, fault->x, fault->y);
 }
 

@@ -6,6 +6,7 @@
 #include "sdl/lex.h"
 
 #include "base/mem.h"
+#include "sdl/decimal.h"
 #include "sdl/vector_scan.h"
 
 #include <stdlib.h>
@@ -14,8 +15,6 @@
 enum {
     CTRL_Z = 0x1A,         /* ends a text file of old systems */
     NUMBER_MAX = 255,      /* characters */
-    EXACT_DIGITS = 15,     /* a decimal of so many digits is exact in a double */
-    EXACT_POWER = 22,      /* so is a power of ten up to this */
     EXPONENT_MAX = 100000, /* beyond, the value is 0 or infinite anyhow */
 };
 
@@ -144,7 +143,7 @@ static void take_digits(Lexer *lx, Decimal *d, bool is_fraction)
         int digit = byte_at(lx, 0) - '0';
         if (d->digit_count || digit)
             d->digit_count++;
-        if (d->digit_count <= EXACT_DIGITS) {
+        if (d->digit_count <= DECIMAL_DIGITS) {
             d->digits = d->digits * 10 + (uint64_t)digit;
             d->exponent -= is_fraction;
         }
@@ -167,15 +166,11 @@ static void take_exponent(Lexer *lx, Decimal *d)
     d->exponent += is_negative ? -exponent : exponent;
 }
 
-/* Return the value: exact arithmetic when both parts are exact, the C library otherwise. */
-static double decimal_value(const Lexer *lx, const Decimal *d, size_t begin)
+/* Return the value of a number: by exact arithmetic where that will do, by the C library else. */
+static double number_value(const Lexer *lx, const Decimal *d, size_t begin)
 {
-    static const double powers[EXACT_POWER + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                                   1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                                   1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-    if (d->digit_count <= EXACT_DIGITS && abs(d->exponent) <= EXACT_POWER)
-        return d->exponent < 0 ? (double)d->digits / powers[-d->exponent]
-                               : (double)d->digits * powers[d->exponent];
+    if (decimal_is_exact(d->digit_count, d->exponent))
+        return decimal_value(d->digits, d->exponent);
     char text[NUMBER_MAX + 1];
     size_t length = lx->at - begin;
     memcpy(text, lx->text + begin, length);
@@ -201,7 +196,7 @@ static void lex_number(Lexer *lx)
         add_illegal(lx, begin, lx->at, "a number has at most 255 characters");
         return;
     }
-    double value = decimal_value(lx, &d, begin);
+    double value = number_value(lx, &d, begin);
     add(lx, TOKEN_NUMBER, begin, lx->at)->number = value;
 }
 

@@ -1,19 +1,12 @@
 /* Plain vectors, read straight from the text.  SPDX-License-Identifier: Apache-2.0 */
 #include "sdl/vector_scan.h"
 
+#include "sdl/decimal.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-enum {
-    DIGITS_EXACT = 15, /* a decimal of so many digits is exact in a double */
-    POWER_EXACT = 22   /* so is a power of ten up to this */
-};
-
-static const double powers[POWER_EXACT + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                               1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                               1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
 static inline bool is_digit(char c)
 {
@@ -60,14 +53,13 @@ static const char *scan_number(const char *at, const char *end, double *out)
         exponent = (int)(point - at);
         count += at - point;
     }
-    if (count == 0 || count > DIGITS_EXACT)
+    if (count == 0)
         return NULL;
     if (at < end && (*at == 'e' || *at == 'E') && !(at = scan_exponent(at + 1, end, &exponent)))
         return NULL;
-    if (exponent < -POWER_EXACT || exponent > POWER_EXACT)
+    if (!decimal_is_exact(count, exponent))
         return NULL;
-    double value =
-        exponent < 0 ? (double)digits / powers[-exponent] : (double)digits * powers[exponent];
+    double value = decimal_value(digits, exponent);
     *out = is_negative ? -value : value;
     return at;
 }

@@ -37,12 +37,6 @@ static int by_key(const void *a, const void *b)
     return x->box < y->box ? -1 : x->box > y->box;
 }
 
-static double half_area(Bound b)
-{
-    V3 size = v3_sub(b.hi, b.lo);
-    return size.x * size.y + size.y * size.z + size.z * size.x;
-}
-
 static Bin bin_join(Bin a, Bin b)
 {
     return (Bin){bound_union(a.box, b.box), a.count + b.count};
@@ -51,7 +45,7 @@ static Bin bin_join(Bin a, Bin b)
 /* What is looked at of one side. */
 static double bin_cost(Bin bin)
 {
-    return bin.count == 0 ? 0 : half_area(bin.box) * bin.count;
+    return bin.count == 0 ? 0 : bound_half_area(bin.box) * bin.count;
 }
 
 /* Return the number of the first bin that goes to the right; 0: no split is of use. */

@@ -49,12 +49,6 @@ static void split_member(const BoxTree *tree, Brood *brood, int k)
     }
 }
 
-static double half_area(Bound b)
-{
-    V3 size = v3_sub(b.hi, b.lo);
-    return size.x * size.y + size.y * size.z + size.z * size.x;
-}
-
 /* Return the member with the largest box that can be split without there being too many; -1: none.
  */
 static int widest(const BoxTree *tree, const Brood *brood)
@@ -66,7 +60,7 @@ static int widest(const BoxTree *tree, const Brood *brood)
             continue;
         const BoxNode *node = &tree->nodes[brood->what[k]];
         int more = node->count ? (int)node->count - 1 : 1;
-        double area = half_area(node->box);
+        double area = bound_half_area(node->box);
         /* The root is split even if its area is no number: it must not hold itself. */
         if (brood->count + more <= BLOCK && (best < 0 || area > best_area)) {
             best = k;
